@@ -1,0 +1,83 @@
+#pragma once
+
+// What the renderer is given: plain geometry and colours. It knows nothing of springs or solvers;
+// tool/view.cpp makes these values from a scene and a simulated frame.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace unravel {
+
+using Vec3f = Eigen::Vector3f;
+using Vec2f = Eigen::Vector2f;
+
+/// sRGB-encoded colour as a user writes it; the renderer converts to linear for shading.
+struct Rgb {
+    std::uint8_t r = 0, g = 0, b = 0;
+    bool operator==(const Rgb&) const = default;
+};
+
+enum class WeavePattern { plain, twill, checks, stripes, solid };
+
+struct ClothAppearance {
+    WeavePattern weave = WeavePattern::checks;
+    Rgb front{176, 58, 72}, front_second{242, 230, 216}, back{125, 42, 53};
+    float period = 0.05f;  ///< m, of checks or stripes
+    std::string texture;   ///< path of a PNG; empty: the weave
+};
+
+/// One cloth's fixed topology. Vertices are display vertices: a tube repeats its seam column so that uv stays
+/// continuous; `particle` says which particle each takes its position from.
+struct ClothMesh {
+    std::vector<std::uint32_t> particle;  ///< (vertices) index into DrawFrame::positions
+    std::vector<Vec2f> uv;                ///< (vertices) metres along the flat cloth
+    std::vector<std::array<std::uint32_t, 3>>
+        triangles;                                    ///< vertex indices, counter-clockwise from the front
+    std::vector<std::array<std::uint32_t, 2>> edges;  ///< particle indices, the springs drawn as wires
+    ClothAppearance appearance;
+};
+
+enum class SolidShape { plane, sphere, box, cylinder, capsule };
+
+struct SolidMesh {
+    SolidShape shape = SolidShape::sphere;
+    float radius = 0.3f, height = 1.0f, round = 0.0f;  ///< m; cylinders and capsules stand along y, capsules'
+                                                       ///< height is between the centres of their caps
+    Vec3f size{1, 1, 1};  ///< box: full edge lengths [m]
+    Rgb color{201, 183, 156};
+};
+
+struct CameraView {
+    Vec3f position{1.6f, 1.2f, 1.9f}, target{0, 0.3f, 0}, up{0, 1, 0};
+    float fov = 35;  ///< degrees, vertical
+};
+
+/// Fixed for a whole clip.
+struct DrawScene {
+    std::vector<ClothMesh> cloths;
+    std::vector<SolidMesh> solids;
+    Rgb background{216, 222, 230};
+    bool show_ground = true;
+    float ground_height = 0;  ///< m
+    Rgb ground{141, 144, 150};
+    Vec3f bounds_low{-1, 0, -1},
+        bounds_high{1, 1, 1};  ///< m, of everything over the clip; aims light and shadow
+};
+
+/// What changes from frame to frame.
+struct DrawFrame {
+    std::vector<Vec3f> positions;      ///< (particles) [m]
+    std::vector<Rgb> particle_colors;  ///< (particles) component view: by component, white if constrained
+    std::vector<std::uint8_t>
+        edge_strength;  ///< (edges of all cloths, in order) 255 solid … 0 not drawn; empty: all solid
+    std::vector<Eigen::Isometry3f> solid_poses;  ///< (solids) shape's own frame to world
+    CameraView camera;
+};
+
+enum class DrawStyle { textured, components };
+
+}  // namespace unravel

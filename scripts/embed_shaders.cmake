@@ -1,0 +1,10 @@
+# Writes OUTPUT, a C++ file with render::shader_sources(): the text of each file of FILES by its name.
+set(text "// Generated from shaders/.\n#include \"render/shader_sources.hpp\"\n\nnamespace unravel {\n\n")
+string(APPEND text "std::string_view shader_source(std::string_view name) {\n")
+foreach(file ${FILES})
+  get_filename_component(name ${file} NAME)
+  file(READ ${file} source)
+  string(APPEND text "    if (name == \"${name}\") return R\"GLSL(${source})GLSL\";\n")
+endforeach()
+string(APPEND text "    return {};\n}\n\n}  // namespace unravel\n")
+file(WRITE ${OUTPUT} "${text}")

@@ -1,0 +1,236 @@
+#pragma once
+
+// The scene as the user wrote it: plain values in SI units, checked by load_scene() (load.hpp), read by
+// everything downstream and changed by nothing. An optional that is empty, or a list that is empty, is an
+// effect that the scene does not call for: it is not simulated at all.
+//
+// World: right-handed, y up, metres, kilograms, seconds. Angles are degrees here and nowhere else.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace unravel {
+
+using Vec3 = Eigen::Vector3d;
+using Vec2 = Eigen::Vector2d;
+
+/// A place in the scene file (1-based), or in the n-th --set option when `option` is positive.
+struct SourcePlace {
+    int line = 0;
+    int column = 0;
+    int option = 0;
+};
+
+struct Clip {
+    double duration = 3.0;  ///< s; frames 0 … round(duration·fps), frame k due at exactly k/fps
+    int fps = 30;           ///< frames per second
+    std::array<int, 2> size{1280, 720};  ///< pixels, both even (4:2:0 video)
+    int frames() const { return static_cast<int>(duration * fps + 0.5) + 1; }
+};
+
+/// Elastic constants of a cloth as a continuum, so that refining the grid refines the same cloth.
+/// The springs' own constants are derived from them in model.cpp.
+struct Material {
+    std::string preset;  ///< name of the preset that gave the defaults; empty: none
+    std::array<double, 2> stretch{50.0,
+                                  50.0};  ///< N/m along u (weft) and v (warp): force per width per strain
+    std::array<double, 2> stretch_damping{1e-3, 1e-3};  ///< N·s/m
+    double shear = 5.0;                                 ///< N/m, in-plane shear modulus times thickness
+    double shear_damping = 1e-4;                        ///< N·s/m
+    double bend = 1e-5;                                 ///< N·m, bending stiffness per width (B)
+    double buckling_strain = 0.02;  ///< compression at which a strip's push is the buckled arc's
+};
+
+/// Where in a cloth's own square: u, v ∈ [0, 1].
+struct UvBox {
+    Vec2 low{0, 0}, high{1, 1};
+};
+struct UvDisc {
+    Vec2 center{0.5, 0.5};
+    double radius = 0;  ///< m along the flat cloth
+};
+
+/// A part of a cloth made of something else (interfacing, a hem, a lead weight).
+struct Region {
+    UvBox box;
+    std::optional<Material> material;  ///< absent: the cloth's own
+    std::optional<double> density;     ///< kg/m²; absent: the cloth's own
+    SourcePlace place;
+};
+
+struct Keyframe {
+    double time = 0;         ///< s
+    Vec3 position{0, 0, 0};  ///< m
+    Vec3 rotation{0, 0, 0};  ///< degrees about x, then y, then z (world axes)
+};
+
+/// Keyframed rigid motion, interpolated with continuous velocity (Hermite; at rest before the first and after
+/// the last keyframe). Empty: does not move.
+using Motion = std::vector<Keyframe>;
+
+enum class PinTarget { corner, edge, particles, box, disc };
+
+/// Particles whose motion is prescribed: fully constrained from the start until `release`.
+struct Pin {
+    PinTarget target = PinTarget::corner;
+    std::string name;  ///< corner: "u0v0", "u1v0", "u0v1", "u1v1"; edge: "u0", "u1", "v0", "v1"
+    std::array<int, 4> range{0, 0, 0, 0};  ///< particles: first and last grid index along u, then along v
+    UvBox box;
+    UvDisc disc;
+    Motion motion;  ///< displacement from, and rotation about the centre of, the pinned particles
+    std::optional<double> release;  ///< s; absent: never
+    SourcePlace place;
+};
+
+enum class Wrap { open, tube };
+
+/// A sheet of particles.u × particles.v. Unrotated it lies in the x–z plane, u along +x, v along +z, its
+/// front (+y) up. A tube is closed in u: its axis is z, its circumference size[0], its front outside.
+struct Cloth {
+    std::string name;
+    std::array<int, 2> particles{51, 51};
+    std::array<double, 2> size{1.0, 1.0};  ///< m, flat and at rest
+    double density = 0.2;                  ///< kg/m²
+    Wrap wrap = Wrap::open;
+    Vec3 center{0, 0, 0};                      ///< m
+    Vec3 rotation{0, 0, 0};                    ///< degrees about x, then y, then z
+    Vec3 velocity{0, 0, 0};                    ///< m/s at the start
+    std::array<double, 2> placed_scale{1, 1};  ///< size as placed over size at rest (1.08: 8% pre-stretched)
+    double jitter = 0;       ///< m, seeded random displacement along the normal at the start
+    std::uint32_t seed = 1;  ///< of the jitter
+    Material material;
+    std::vector<Region> regions;
+    std::vector<Pin> pins;
+    SourcePlace place;
+};
+
+enum class Shape { plane, sphere, box, cylinder, capsule };
+
+struct Friction {
+    double static_ = 0.5;  ///< coefficient while held
+    double kinetic = 0.4;  ///< coefficient while sliding, ≤ static_
+};
+
+/// A rigid implicit surface. Unrotated: a plane faces +y; cylinders and capsules stand along y.
+struct Solid {
+    std::string name;
+    Shape shape = Shape::sphere;
+    double radius = 0.3;  ///< sphere, cylinder, capsule [m]
+    double height = 1.0;  ///< cylinder: whole height; capsule: between the centres of its caps [m]
+    Vec3 size{1, 1, 1};   ///< box: full edge lengths [m]
+    double round = 0.0;   ///< box, cylinder: radius of the rounded edges [m]
+    Vec3 center{0, 0, 0};
+    Vec3 rotation{0, 0, 0};  ///< degrees
+    Motion motion;           ///< displaces and turns it (about `pivot`) from where it stands
+    Vec3 pivot{0, 0, 0};     ///< m, in the world at the start; default: its centre
+    Friction friction;
+    double offset = 0.004;  ///< m, distance at which cloth is held off the surface (its skin)
+    std::string color;      ///< "#rrggbb"; empty: the look's default
+    SourcePlace place;
+};
+
+enum class Integrator { explicit_, implicit, newton, imex, adaptive_imex, bdf2, adaptive_imex2, auto_ };
+enum class Preconditioner { none, diagonal, block, constrained_block, ssor, ic0, multigrid, auto_ };
+
+/// Step size chosen while running; a rejected step is undone exactly.
+struct AdaptiveStep {
+    double smallest = 1e-5;   ///< s; the run stops where this would not do
+    double max_strain = 0.1;  ///< a step that leaves a larger increase of stretch is rejected
+    double tolerance = 0;     ///< m, local error per step; 0: not tested
+    SourcePlace place;
+};
+
+struct Solver {
+    Integrator integrator = Integrator::adaptive_imex;
+    double step = 0.005;     ///< s; divides the frame
+    double threshold = 0.2;  ///< on κ of (7): explicit where κ ≤ threshold
+    Preconditioner preconditioner = Preconditioner::constrained_block;
+    double tolerance = 1e-3;       ///< relative preconditioned residual
+    int max_iterations = 2000;     ///< of CG, per component
+    bool decompose = true;         ///< false: one system over all particles
+    double activation_band = 0.0;  ///< springs with l > (1 − band) L get their Jacobian, but no force
+    std::optional<AdaptiveStep> adaptive;  ///< absent: every step is `step`
+};
+
+/// Gusts: a smooth seeded random factor on the wind.
+struct Gust {
+    double strength = 0.5;  ///< standard deviation of the speed over its mean
+    double period = 1.0;    ///< s
+    std::uint32_t seed = 1;
+};
+
+struct WindKey {
+    double time = 0;
+    Vec3 velocity{0, 0, 0};
+};
+
+/// Air. Present with zero velocity: still air that resists.
+struct Wind {
+    Vec3 velocity{0, 0, 0};          ///< m/s
+    std::vector<WindKey> keyframes;  ///< replaces `velocity`
+    std::optional<Gust> gust;
+    double density = 1.2;  ///< kg/m³
+    double drag = 1.0;     ///< coefficient on the normal velocity
+    double lift = 0.0;     ///< coefficient on the tangential velocity
+    SourcePlace place;
+};
+
+struct SelfCollision {
+    double thickness = 0;  ///< m; 0: from the particle spacing
+    double stiffness = 0;  ///< N/m of a temporary spring; 0: from the material
+    double damping = 0;    ///< N·s/m
+    SourcePlace place;
+};
+
+struct Camera {
+    std::string name;
+    Vec3 position{1.6, 1.2, 1.9};
+    Vec3 target{0, 0.3, 0};
+    double fov = 35;   ///< degrees, vertical
+    double orbit = 0;  ///< degrees turned about the target over the clip
+    struct Key {
+        double time = 0;
+        Vec3 position{0, 0, 0}, target{0, 0, 0};
+    };
+    std::vector<Key> keyframes;
+};
+
+enum class Weave { plain, twill, checks, stripes, solid };
+
+struct ClothLook {
+    Weave weave = Weave::checks;
+    std::string front = "#b03a48", front_second = "#f2e6d8";  ///< the two yarn colours of the front
+    std::string back = "#7d2a35";
+    double scale = 0.05;  ///< m, period of checks or stripes
+    std::string texture;  ///< PNG file beside the scene; empty: the weave
+};
+
+struct Look {
+    std::vector<ClothLook> cloth;  ///< one per cloth; the last serves the rest
+    std::string background = "#d8dee6";
+    std::string ground = "#8d9096";
+    std::string solid = "#c9b79c";
+    bool show_ground = true;
+    std::optional<double> ground_height;  ///< m; absent: under the lowest plane or a little under everything
+};
+
+/// The whole scene. Gravity is present unless the scene says `gravity = [0, 0, 0]`.
+struct Scene {
+    std::string name;  ///< file name without its ending
+    std::string text;  ///< the file as read
+    Clip clip;
+    Vec3 gravity{0, -9.81, 0};  ///< m/s²
+    std::vector<Cloth> cloths;
+    std::vector<Solid> solids;
+    Solver solver;
+    std::optional<Wind> wind;
+    std::optional<SelfCollision> self_collision;
+    std::vector<Camera> cameras;  ///< at least one after loading
+    Look look;
+};
+
+}  // namespace unravel
