@@ -1,0 +1,61 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/constraints.hpp"
+#include "sim/math.hpp"
+#include "sim/scene/scene.hpp"
+#include "sim/solids/motion.hpp"
+#include "sim/state.hpp"
+
+namespace unravel {
+
+/// Contact of particles with solids by constraints (Baraff & Witkin 1998, Sec. 5–6): a touching particle
+/// loses the direction of the solid's normal; static friction takes all three. Two contacts take two
+/// directions, three or a pinch between two solids ("flypapering", Baraff, Witkin & Kass 2003) all.
+
+/// Where each solid is at the beginning and at the end of a step.
+struct SolidPoses {
+    std::vector<Pose> now, next;  ///< (solids)
+};
+void pose_solids(std::span<const Solid> solids, double t, double h, SolidPoses& out);
+
+/// A contact as seen in this step.
+struct Touch {
+    Contact contact;
+    Vec3 normal{0, 1, 0};    ///< unit, out of the solid
+    Vec3 velocity{0, 0, 0};  ///< m/s, of the solid's material at the particle, over the step
+    double gap = 0;          ///< m, distance beyond the solid's offset; negative: too deep
+    bool pinched = false;    ///< held between two solids
+};
+
+/// The discrete step as the constraints see it: x' = base + h v' with v' = v + Δv.
+struct StepView {
+    std::span<const Vec3> x;  ///< (particles) where they are [m]
+    std::span<const Vec3> v;  ///< (particles) what Δv is added to [m/s]
+    std::span<const double> mass;
+    double h = 0;           ///< s, factor of v' in x'
+    double gravity = 9.81;  ///< m/s², scale of forces that count as none
+};
+
+/// Finds what touches: contacts of the last step that have not opened, and particles that would enter a
+/// solid's offset within the step. Sorted by particle, then solid. `pinned` particles touch nothing;
+/// `found` is scratch.
+void find_touches(std::span<const Solid> solids, const SolidPoses& poses, const StepView& view,
+                  std::span<const Contact> known, const Constraints& pinned,
+                  std::vector<std::vector<Touch>>& found, std::vector<Touch>& out);
+
+/// Decides what sticks and what slides, and turns touches into constraints.
+///   base      (particles) positions x' starts from [m]; depth corrections are added here, never to a
+///   velocity impulse   (particles) kinetic friction is added [kg·m/s]
+void constrain_touches(std::span<const Solid> solids, const StepView& view, std::vector<Touch>& touches,
+                       Constraints& constraints, std::span<Vec3> base, std::span<Vec3> impulse);
+
+/// After the solve: releases contacts whose constraint force pulls, lets held ones slip where friction can't
+/// hold them, and writes the contacts for the next step.
+///   reaction  (constraints) impulse of each constraint, A Δv − b [kg·m/s]
+void judge_touches(std::span<const Solid> solids, const StepView& view, const Constraints& constraints,
+                   std::span<const Vec3> reaction, std::span<Touch> touches, std::vector<Contact>& out);
+
+}  // namespace unravel

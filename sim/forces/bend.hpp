@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/math.hpp"
+
+namespace unravel {
+
+/// Bend springs between interlaced particles (distance 2 along rows, columns and diagonals) after Choi & Ko,
+/// "Stable but responsive cloth" (2002), Sec. 4.2. Where the strip between its ends is shorter than flat, it
+/// is a circular arc of its flat length and pushes its ends apart; it never pulls.
+struct BendSprings {
+    std::vector<std::uint32_t> i, j;  ///< (springs) particles, i < j
+    std::vector<double> rest;         ///< (springs) L [m], the flat length
+    std::vector<double> stiffness;    ///< (springs) k_b [N·m²]
+    std::vector<double> slope;        ///< (springs) c_b [N/m], before the step's own limit
+    std::size_t size() const { return i.size(); }
+};
+
+/// What depends on the step size: the slope that explicit treatment bears, and where it meets the arc's push.
+struct BendLimit {
+    double h = 0;                  ///< s, the step these were made for
+    std::vector<double> slope;     ///< (springs) N/m, min(c_b, limit·m/h²)
+    std::vector<double> crossing;  ///< (springs) m, length below which the arc's push is the weaker
+    std::size_t limited = 0;       ///< springs whose slope the step size reduced
+};
+
+/// Share of m/h² that the slope of an explicit bend spring may reach. Forward–backward Euler bears an
+/// eigenvalue of h²K/m of 4; a particle's eight bend springs together give at most 8 c_b/m, hence one half.
+inline constexpr double bend_slope_limit = 0.5;
+
+/// Shape of the arc's push: f_b = (4 k_b/L²) F(s) with s = l/L = sin θ/θ, F = θ²/(cos θ − sin θ/θ); F(1) =
+/// −3, F(0) = −π². Polynomial in 1 − s, within 4e-5 of the exact value (relative) for every s of [0, 1].
+double arc_force(double s);
+
+/// θ², for the arc's energy 2 k_b θ²/L: the integral of 2F from 1 to s, so that force and energy agree to
+/// rounding.
+double arc_energy(double s);
+
+/// Signed force along û = (x_j − x_i)/l on particle i [N], ≤ 0 (pushes apart): the weaker of the arc's push
+/// and c_b (l − L); 0 for l ≥ L.
+double bend_force(double length, double rest, double stiffness, double slope);
+
+/// Its energy [J], 0 at l ≥ L; `crossing` as BendLimit says.
+double bend_energy(double length, double rest, double stiffness, double slope, double crossing);
+
+/// Length at which the two pushes are equal, or 0 if the linear one is the weaker everywhere [m].
+double bend_crossing(double rest, double stiffness, double slope);
+
+/// Fills `limit` for step size h where it is not that already. `mass` is (particles) [kg].
+void limit_bend(const BendSprings& springs, std::span<const double> mass, double h, BendLimit& limit);
+
+/// Force on each spring's particle i (on j its opposite) [N]. (springs)
+void bend_forces(const BendSprings& springs, const BendLimit& limit, std::span<const Vec3> x,
+                 std::span<Vec3> force);
+
+}  // namespace unravel

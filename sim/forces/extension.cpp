@@ -1,0 +1,72 @@
+#include "sim/forces/extension.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace unravel {
+
+void ExtensionForces::resize(std::size_t springs) {
+    force.resize(springs);
+    direction.resize(springs);
+    transverse.resize(springs);
+    state.resize(springs);
+}
+
+void extension_forces(const ExtensionSprings& springs, std::span<const double> mass, std::span<const Vec3> x,
+                      std::span<const Vec3> v, double h, const Splitting& splitting, double band,
+                      ExtensionForces& out) {
+    out.resize(springs.size());
+    parallel_each(springs.size(), [&](std::size_t s) {
+        const std::uint32_t i = springs.i[s], j = springs.j[s];
+        const double rest = springs.rest[s];
+        const Vec3 d = x[j] - x[i];
+        const double squared = d.squaredNorm();
+        const double reach = (1.0 - band) * rest;
+        if (squared <= reach * reach || squared == 0) {
+            out.force[s].setZero();
+            out.state[s] = SpringState::inactive;
+            return;
+        }
+        const double stiffness = springs.stiffness[s], damping = springs.damping[s];
+        const double lighter = std::min(mass[i], mass[j]);
+        const double threshold =
+            s < springs.stretch_count ? splitting.stretch_threshold : splitting.shear_threshold;
+        const bool is_explicit = kappa(h, 1.0 / lighter, stiffness, damping) <= threshold;
+        const double length = std::sqrt(squared);
+        if (length <= rest && is_explicit) {
+            out.force[s].setZero();
+            out.state[s] = SpringState::inactive;
+            return;
+        }
+        const Vec3 u = d / length;
+        out.direction[s] = u;
+        out.state[s] = is_explicit ? SpringState::explicit_ : SpringState::implicit;
+        if (length > rest) {
+            out.force[s] = (stiffness * (length - rest) + damping * u.dot(v[j] - v[i])) * u;
+            out.transverse[s] = stiffness * (1.0 - rest / length);
+        } else {
+            out.force[s].setZero();
+            out.transverse[s] = 0;
+        }
+    });
+}
+
+Adjacency adjacency_of(std::size_t particles, std::span<const std::uint32_t> i,
+                       std::span<const std::uint32_t> j) {
+    Adjacency adjacency;
+    adjacency.start.assign(particles + 1, 0);
+    for (std::size_t s = 0; s < i.size(); ++s) {
+        ++adjacency.start[i[s] + 1];
+        ++adjacency.start[j[s] + 1];
+    }
+    for (std::size_t p = 0; p < particles; ++p) adjacency.start[p + 1] += adjacency.start[p];
+    adjacency.entries.resize(2 * i.size());
+    std::vector<std::uint32_t> next(adjacency.start.begin(), adjacency.start.end() - 1);
+    for (std::uint32_t s = 0; s < i.size(); ++s) {
+        adjacency.entries[next[i[s]]++] = {s, j[s]};
+        adjacency.entries[next[j[s]]++] = {s, i[s]};
+    }
+    return adjacency;
+}
+
+}  // namespace unravel

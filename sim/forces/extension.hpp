@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/math.hpp"
+
+namespace unravel {
+
+/// Stretch and shear springs: they act only in extension (Choi & Ko 2002; paper Sec. 2.1). Stretch springs
+/// come first; within a family they follow the grid.
+struct ExtensionSprings {
+    std::vector<std::uint32_t> i, j;  ///< (springs) particles, i < j
+    std::vector<double> rest;         ///< (springs) L [m]
+    std::vector<double> stiffness;    ///< (springs) k_s [N/m]
+    std::vector<double> damping;      ///< (springs) k_d [N·s/m]
+    std::size_t stretch_count = 0;    ///< springs [0, stretch_count) are stretch, the rest shear
+    std::size_t size() const { return i.size(); }
+};
+
+/// What a spring does in a step. Inactive: slack, neither force nor Jacobian. Explicit: force only. Implicit:
+/// force and Jacobian, hence an edge of the component graph.
+enum class SpringState : std::uint8_t { inactive, explicit_, implicit };
+
+/// Forces of the extension springs at (x, v), and what their Jacobians are made of:
+///   ∂f_i/∂x_j = (k_s − t) ûûᵀ + t I,  t = k_s (1 − L/l),    ∂f_i/∂v_j = k_d ûûᵀ,    ∂f_i/∂x_i = −∂f_i/∂x_j.
+/// Both blocks are positive semidefinite for l ≥ L, so that A of Eq. (5) is SPD with nothing clamped.
+struct ExtensionForces {
+    std::vector<Vec3> force;         ///< (springs) on i, on j its opposite [N]; 0 where slack
+    std::vector<Vec3> direction;     ///< (springs) û, unit, from i to j; set where the state is not inactive
+    std::vector<double> transverse;  ///< (springs) t ≥ 0 [N/m]; set where the state is not inactive
+    std::vector<SpringState> state;  ///< (springs)
+    void resize(std::size_t springs);
+};
+
+/// Where a particle's springs are: entries [start[p], start[p+1]) name the spring and the particle at its
+/// other end, sorted by spring.
+struct Adjacency {
+    struct Entry {
+        std::uint32_t spring, other;
+    };
+    std::vector<std::uint32_t> start;  ///< (particles + 1)
+    std::vector<Entry> entries;        ///< (2 × springs)
+};
+
+/// Adjacency of the graph with edges (i[s], j[s]).
+Adjacency adjacency_of(std::size_t particles, std::span<const std::uint32_t> i,
+                       std::span<const std::uint32_t> j);
+
+/// One kind of springs as the linear algebra sees it: those of the cloth, or the temporary ones of
+/// self-collision.
+struct SpringFamily {
+    const ExtensionSprings* springs;
+    const Adjacency* adjacency;
+    const ExtensionForces* forces;
+};
+
+/// Which springs are implicit (paper Sec. 3.5): κ = (h/m)(k_s h + 2 k_d), Eq. (7), m the smaller mass. A
+/// spring is explicit where κ ≤ threshold; +∞ makes all explicit, a negative one all implicit.
+struct Splitting {
+    double stretch_threshold = 0.2;
+    double shear_threshold = 0.2;
+};
+
+/// κ of Eq. (7), dimensionless. inverse_mass is 1/m of the lighter end [1/kg].
+inline double kappa(double h, double inverse_mass, double stiffness, double damping) {
+    return h * inverse_mass * (stiffness * h + 2.0 * damping);
+}
+
+/// Evaluates all springs at (x, v) for a step of h seconds. `band` ≥ 0: a slack spring with l > (1 − band) L
+/// that is handled implicitly gets its Jacobian (t = 0) but no force, so that a pull can travel through it
+/// within the step.
+void extension_forces(const ExtensionSprings& springs, std::span<const double> mass, std::span<const Vec3> x,
+                      std::span<const Vec3> v, double h, const Splitting& splitting, double band,
+                      ExtensionForces& out);
+
+/// Energy of one spring [J].
+inline double extension_energy(double length, double rest, double stiffness) {
+    const double e = length - rest;
+    return e > 0 ? 0.5 * stiffness * e * e : 0.0;
+}
+
+}  // namespace unravel

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/model.hpp"
+#include "sim/report.hpp"
+#include "sim/state.hpp"
+
+namespace unravel {
+
+/// Memory of the measurements, kept between steps.
+struct MeasureWorkspace {
+    std::vector<double> strain;  ///< (stretch springs)
+    std::vector<double> partials;
+};
+
+/// Fills strain, lowest point and energies of the state into a report. `bend` is the limit that the step
+/// used.
+void measure(const ClothModel& model, const BendLimit& bend, const ClothState& state, MeasureWorkspace& ws,
+             StepReport& report);
+
+}  // namespace unravel

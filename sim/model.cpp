@@ -1,0 +1,237 @@
+#include "sim/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "sim/random.hpp"
+#include "sim/solids/motion.hpp"
+
+namespace unravel {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// One cloth's grid with its metrics; a and b are the edge lengths of a cell.
+struct Grid {
+    const Cloth& cloth;
+    ClothPatch patch;
+    double a, b;
+
+    Grid(const Cloth& c, std::uint32_t first) : cloth(c) {
+        patch = {c.name, first, c.particles, c.size, c.wrap == Wrap::tube};
+        a = patch.cells_u() > 0 ? c.size[0] / patch.cells_u() : c.size[0];
+        b = patch.cells_v() > 0 ? c.size[1] / patch.cells_v() : c.size[1];
+    }
+    int nu() const { return patch.particles[0]; }
+    int nv() const { return patch.particles[1]; }
+    // Width of the strip that column i (row j) stands for: half a cell at an open end.
+    double width_u(int i) const {
+        return nu() == 1 ? a : patch.tube || (i > 0 && i + 1 < nu()) ? a : 0.5 * a;
+    }
+    double width_v(int j) const { return nv() == 1 ? b : j > 0 && j + 1 < nv() ? b : 0.5 * b; }
+    // Place on the cloth's own square; halves stand for the middles of springs.
+    Vec2 uv(double i, double j) const {
+        const double columns = patch.cells_u() > 0 ? patch.cells_u() : 1,
+                     rows = patch.cells_v() > 0 ? patch.cells_v() : 1;
+        return {i / columns, j / rows};
+    }
+};
+
+bool inside(const UvBox& box, const Vec2& uv) {
+    return uv.x() >= box.low.x() && uv.x() <= box.high.x() && uv.y() >= box.low.y() && uv.y() <= box.high.y();
+}
+
+// The last region that holds a place decides.
+const Material& material_at(const Cloth& cloth, const Vec2& uv) {
+    const Material* found = &cloth.material;
+    for (const Region& region : cloth.regions) {
+        if (region.material && inside(region.box, uv)) found = &*region.material;
+    }
+    return *found;
+}
+
+double density_at(const Cloth& cloth, const Vec2& uv) {
+    double found = cloth.density;
+    for (const Region& region : cloth.regions) {
+        if (region.density && inside(region.box, uv)) found = *region.density;
+    }
+    return found;
+}
+
+void add_extension(ExtensionSprings& springs, std::uint32_t p, std::uint32_t q, double rest, double stiffness,
+                   double damping) {
+    springs.i.push_back(std::min(p, q));
+    springs.j.push_back(std::max(p, q));
+    springs.rest.push_back(rest);
+    springs.stiffness.push_back(stiffness);
+    springs.damping.push_back(damping);
+}
+
+void add_stretch(const Grid& g, ExtensionSprings& springs) {
+    for (int j = 0; j < g.nv(); ++j) {
+        for (int i = 0; i < g.nu(); ++i) {
+            if (i < g.patch.cells_u()) {
+                const Material& m = material_at(g.cloth, g.uv(i + 0.5, j));
+                const double shape = g.width_v(j) / g.a;
+                add_extension(springs, g.patch.at(i, j), g.patch.at(i + 1, j), g.a, m.stretch[0] * shape,
+                              m.stretch_damping[0] * shape);
+            }
+            if (j < g.patch.cells_v()) {
+                const Material& m = material_at(g.cloth, g.uv(i, j + 0.5));
+                const double shape = g.width_u(i) / g.b;
+                add_extension(springs, g.patch.at(i, j), g.patch.at(i, j + 1), g.b, m.stretch[1] * shape,
+                              m.stretch_damping[1] * shape);
+            }
+        }
+    }
+}
+
+void add_shear(const Grid& g, ExtensionSprings& springs) {
+    const double diagonal = std::hypot(g.a, g.b), shape = diagonal * diagonal / (g.a * g.b);
+    for (int j = 0; j < g.patch.cells_v(); ++j) {
+        for (int i = 0; i < g.patch.cells_u(); ++i) {
+            const Material& m = material_at(g.cloth, g.uv(i + 0.5, j + 0.5));
+            const double k = m.shear * shape, d = m.shear_damping * shape;
+            add_extension(springs, g.patch.at(i, j), g.patch.at(i + 1, j + 1), diagonal, k, d);
+            add_extension(springs, g.patch.at(i + 1, j), g.patch.at(i, j + 1), diagonal, k, d);
+        }
+    }
+}
+
+void add_bend(BendSprings& bends, std::uint32_t p, std::uint32_t q, double rest, double width,
+              const Material& m) {
+    const double stiffness = m.bend * width / 3.0;
+    if (stiffness <= 0 || p == q) return;
+    bends.i.push_back(std::min(p, q));
+    bends.j.push_back(std::max(p, q));
+    bends.rest.push_back(rest);
+    bends.stiffness.push_back(stiffness);
+    bends.slope.push_back(12.0 * stiffness / (rest * rest * rest * m.buckling_strain));
+}
+
+void add_bends(const Grid& g, BendSprings& bends) {
+    const double diagonal = std::hypot(g.a, g.b), across = g.a * g.b / diagonal;
+    // A tube of three or four columns has its next-nearest neighbours already among its nearest.
+    const int last_u = g.patch.tube ? (g.nu() > 4 ? g.nu() : 0) : g.nu() - 2;
+    for (int j = 0; j < g.nv(); ++j) {
+        for (int i = 0; i < g.nu(); ++i) {
+            const Material& m = material_at(g.cloth, g.uv(i, j));
+            const bool along_u = i < last_u, along_v = j + 2 < g.nv();
+            if (along_u) add_bend(bends, g.patch.at(i, j), g.patch.at(i + 2, j), 2 * g.a, g.width_v(j), m);
+            if (along_v) add_bend(bends, g.patch.at(i, j), g.patch.at(i, j + 2), 2 * g.b, g.width_u(i), m);
+            if (along_u && along_v) {
+                add_bend(bends, g.patch.at(i, j), g.patch.at(i + 2, j + 2), 2 * diagonal, across, m);
+                add_bend(bends, g.patch.at(i + 2, j), g.patch.at(i, j + 2), 2 * diagonal, across, m);
+            }
+        }
+    }
+}
+
+void place(const Grid& g, Placement& placement) {
+    const Cloth& cloth = g.cloth;
+    const Eigen::Matrix3d turn = rotation_from_degrees(cloth.rotation);
+    // The ring whose chords, not arcs, have the rest length: a tube starts unstretched.
+    const double radius = g.patch.tube ? g.a / (2 * std::sin(std::numbers::pi / g.nu())) : 0;
+    for (int j = 0; j < g.nv(); ++j) {
+        for (int i = 0; i < g.nu(); ++i) {
+            const Vec2 uv = g.uv(i, j);
+            const double along = g.nv() > 1 ? (uv.y() - 0.5) * cloth.size[1] * cloth.placed_scale[1] : 0;
+            const double index = static_cast<double>(g.patch.at(i, j) - g.patch.first);
+            const double off =
+                cloth.jitter > 0
+                    ? cloth.jitter * seeded_uniform(cloth.seed, static_cast<std::uint64_t>(index))
+                    : 0.0;
+            Vec3 local;
+            if (g.patch.tube) {
+                const double angle = 2 * std::numbers::pi * i / g.nu();
+                const double r = radius * cloth.placed_scale[0] + off;
+                local = {r * std::sin(angle), r * std::cos(angle), along};
+            } else {
+                const double across = g.nu() > 1 ? (uv.x() - 0.5) * cloth.size[0] * cloth.placed_scale[0] : 0;
+                local = {across, off, along};
+            }
+            placement.x.push_back(cloth.center + turn * local);
+            placement.v.push_back(cloth.velocity);
+        }
+    }
+}
+
+bool pinned(const Grid& g, const Pin& pin, int i, int j) {
+    const Vec2 uv = g.uv(i, j);
+    switch (pin.target) {
+        case PinTarget::corner:
+            return (i == 0 || i + 1 == g.nu()) && (j == 0 || j + 1 == g.nv()) &&
+                   (pin.name[1] == '0' ? i == 0 : i + 1 == g.nu()) &&
+                   (pin.name[3] == '0' ? j == 0 : j + 1 == g.nv());
+        case PinTarget::edge: {
+            const int at = pin.name[0] == 'u' ? i : j, count = pin.name[0] == 'u' ? g.nu() : g.nv();
+            return pin.name[1] == '0' ? at == 0 : at + 1 == count;
+        }
+        case PinTarget::particles:
+            return i >= pin.range[0] && i <= pin.range[1] && j >= pin.range[2] && j <= pin.range[3];
+        case PinTarget::box:
+            return inside(pin.box, uv);
+        case PinTarget::disc: {
+            const Vec2 d{(uv.x() - pin.disc.center.x()) * g.cloth.size[0],
+                         (uv.y() - pin.disc.center.y()) * g.cloth.size[1]};
+            return d.norm() <= pin.disc.radius;
+        }
+    }
+    return false;
+}
+
+void add_pins(const Grid& g, const Placement& placement, std::vector<PinnedGroup>& groups) {
+    for (const Pin& pin : g.cloth.pins) {
+        PinnedGroup group;
+        for (int j = 0; j < g.nv(); ++j) {
+            for (int i = 0; i < g.nu(); ++i) {
+                if (!pinned(g, pin, i, j)) continue;
+                group.particles.push_back(g.patch.at(i, j));
+                group.start.push_back(placement.x[g.patch.at(i, j)]);
+                group.centre += group.start.back();
+            }
+        }
+        if (group.particles.empty()) continue;
+        group.centre /= static_cast<double>(group.particles.size());
+        group.motion = pin.motion;
+        group.release = pin.release.value_or(infinity);
+        groups.push_back(std::move(group));
+    }
+}
+
+}  // namespace
+
+ClothModel build_model(const Scene& scene, Placement& placement) {
+    ClothModel model;
+    model.gravity = scene.gravity;
+    model.solids = scene.solids;
+    placement = {};
+    std::vector<Grid> grids;
+    std::uint32_t first = 0;
+    for (const Cloth& cloth : scene.cloths) {
+        grids.emplace_back(cloth, first);
+        first += grids.back().patch.count();
+    }
+    for (const Grid& g : grids) {
+        model.cloths.push_back(g.patch);
+        for (int j = 0; j < g.nv(); ++j) {
+            for (int i = 0; i < g.nu(); ++i) {
+                model.mass.push_back(density_at(g.cloth, g.uv(i, j)) * g.width_u(i) * g.width_v(j));
+            }
+        }
+        add_stretch(g, model.springs);
+    }
+    model.springs.stretch_count = model.springs.size();
+    for (const Grid& g : grids) add_shear(g, model.springs);
+    for (const Grid& g : grids) add_bends(g, model.bends);
+    for (const Grid& g : grids) place(g, placement);
+    for (const Grid& g : grids) add_pins(g, placement, model.pins);
+    model.spring_adjacency = adjacency_of(model.size(), model.springs.i, model.springs.j);
+    model.bend_adjacency = adjacency_of(model.size(), model.bends.i, model.bends.j);
+    return model;
+}
+
+}  // namespace unravel

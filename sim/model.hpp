@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/forces/bend.hpp"
+#include "sim/forces/extension.hpp"
+#include "sim/math.hpp"
+#include "sim/scene/scene.hpp"
+
+namespace unravel {
+
+/// One cloth's share of the particles: the grid i + j·particles[0] from `first` on, i along u.
+struct ClothPatch {
+    std::string name;
+    std::uint32_t first = 0;
+    std::array<int, 2> particles{0, 0};
+    std::array<double, 2> size{0, 0};  ///< m
+    bool tube = false;                 ///< closed in u
+    std::uint32_t count() const {
+        return static_cast<std::uint32_t>(particles[0]) * static_cast<std::uint32_t>(particles[1]);
+    }
+    /// Cells along u and v.
+    int cells_u() const { return tube ? particles[0] : particles[0] - 1; }
+    int cells_v() const { return particles[1] - 1; }
+    std::uint32_t at(int i, int j) const {
+        return first + static_cast<std::uint32_t>(j) * static_cast<std::uint32_t>(particles[0]) +
+               static_cast<std::uint32_t>(tube ? i % particles[0] : i);
+    }
+};
+
+/// Particles that a pin of the scene moves.
+struct PinnedGroup {
+    std::vector<std::uint32_t> particles;  ///< sorted
+    std::vector<Vec3> start;               ///< (particles of the group) where they stand at t = 0 [m]
+    Vec3 centre{0, 0, 0};                  ///< m, what the motion turns about
+    Motion motion;
+    double release = 0;  ///< s; +∞: never
+};
+
+/// Everything that does not change while the cloth moves: topology, rest shape, masses, springs, pins, and
+/// the effects that the scene calls for. Const once built.
+struct ClothModel {
+    std::vector<ClothPatch> cloths;
+    std::vector<double> mass;  ///< (particles) kg: density times the area that is nearer to it than to others
+    ExtensionSprings springs;  ///< stretch and shear
+    Adjacency spring_adjacency;
+    BendSprings bends;
+    Adjacency bend_adjacency;
+    std::vector<PinnedGroup> pins;
+    Vec3 gravity{0, 0, 0};      ///< m/s²
+    std::vector<Solid> solids;  ///< what the cloth meets; empty: no contact at all
+    std::size_t size() const { return mass.size(); }
+};
+
+/// Positions and velocities at t = 0. (particles) [m], [m/s]
+struct Placement {
+    std::vector<Vec3> x, v;
+};
+
+/// Builds the model of a checked scene, and where its particles start. Spring constants follow from the
+/// material so that refining a grid refines the same cloth: with cells of a × b metres,
+///   stretch along u: k_s = E_u · (width of the strip it stands for)/a, half a strip along an edge;
+///   shear: k_s = G (a² + b²)/(a b): a cell in shear has one diagonal in extension, and that one alone gives
+///   G; bend: k_b = B·(width of the strip)/3 along rows, columns and diagonals: on square cells isotropic,
+///   and of bending energy ½ B κ² per area for a cylinder of any direction; c_b so that the push has reached
+///   the arc's own at the material's buckling strain.
+/// Damping scales as the stiffness it goes with.
+ClothModel build_model(const Scene& scene, Placement& placement);
+
+}  // namespace unravel

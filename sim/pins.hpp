@@ -1,0 +1,15 @@
+#pragma once
+
+#include "sim/constraints.hpp"
+#include "sim/contact.hpp"
+#include "sim/model.hpp"
+
+namespace unravel {
+
+/// Constrains the particles of every pin not yet released so that they end the step where their motion has
+/// them.
+///   t_end  s, the end of the step;   base  (particles) positions x' starts from [m]
+void constrain_pins(const ClothModel& model, const StepView& view, std::span<const Vec3> base, double t_end,
+                    Constraints& constraints);
+
+}  // namespace unravel

@@ -1,0 +1,48 @@
+#include "sim/preconditioner.hpp"
+
+#include <Eigen/LU>
+
+namespace unravel {
+
+namespace {
+
+Mat3 inverse_block(Preconditioner kind, const Mat3& C, const Constraint* constraint) {
+    if (!constraint) {
+        switch (kind) {
+            case Preconditioner::none:
+                return Mat3::Identity();
+            case Preconditioner::diagonal:
+                return C.diagonal().cwiseInverse().asDiagonal();
+            default:
+                return C.inverse();
+        }
+    }
+    const Mat3& S = constraint->S;
+    if (constraint->free == 0) return Mat3::Zero();
+    switch (kind) {
+        case Preconditioner::none:
+            return S;
+        case Preconditioner::diagonal:
+            return S * C.diagonal().cwiseInverse().asDiagonal() * S;
+        case Preconditioner::block:
+            return S * C.inverse() * S;
+        default:
+            break;
+    }
+    // c = trace/3 keeps the bordered block as well conditioned as C itself.
+    const Mat3 bordered = S * C * S + C.trace() / 3.0 * (Mat3::Identity() - S);
+    const Mat3 inverse = S * bordered.inverse() * S;
+    return 0.5 * (inverse + inverse.transpose());
+}
+
+}  // namespace
+
+void build_preconditioner(Preconditioner kind, const System& A, const Components& components,
+                          const Constraints& constraints, BlockPreconditioner& out) {
+    out.inverse.resize(A.rows());
+    parallel_each(components.start.back(), [&](std::size_t row) {
+        out.inverse[row] = inverse_block(kind, A.diagonal[row], constraints.find(components.order[row]));
+    });
+}
+
+}  // namespace unravel

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/components.hpp"
+#include "sim/constraints.hpp"
+#include "sim/preconditioner.hpp"
+#include "sim/system.hpp"
+
+namespace unravel {
+
+struct SolveOptions {
+    Preconditioner preconditioner = Preconditioner::constrained_block;
+    double tolerance =
+        1e-3;  ///< on ‖r‖ / ‖Sb‖, both in the norm of P⁻¹ (constrained block), for every preconditioner
+    int max_iterations = 2000;  ///< per component
+};
+
+/// What solving one component took.
+struct ComponentSolve {
+    std::uint32_t iterations = 0;
+    std::uint64_t rvm = 0;  ///< row–vector multiplies: rows × products with A, the first residual's included
+    double residual = 0;    ///< relative, as SolveOptions::tolerance measures it
+    bool converged = true;
+};
+
+/// Memory of the solver, kept between steps.
+struct SolveWorkspace {
+    BlockPreconditioner preconditioner, stopping;
+    std::vector<Vec3> x, r, p, q;  ///< (rows)
+    std::vector<double> partials;  ///< (chunks of rows)
+};
+
+/// Solves Sx = Sb, (I − S)x = (I − S)z (Eq. 9) by modified preconditioned conjugate gradients (Baraff &
+/// Witkin 1998, Sec. 5.3) from x₀ = S y + (I − S) z (Ascher & Boxerman 2003), y = `guess`: each component is
+/// a task of its own on its own rows; a large one is cut into chunks of rows besides. Result in ws.x, in row
+/// order; rows of the fully constrained hold z. A component of one row is solved directly and counts as one
+/// iteration of one multiply.
+///   guess   (particles)   [m/s]
+///   out     (components)
+void solve(const System& A, const Components& components, const Constraints& constraints,
+           std::span<const Vec3> guess, const SolveOptions& options, SolveWorkspace& ws,
+           std::vector<ComponentSolve>& out);
+
+}  // namespace unravel

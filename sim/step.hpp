@@ -1,0 +1,68 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sim/components.hpp"
+#include "sim/contact.hpp"
+#include "sim/measure.hpp"
+#include "sim/model.hpp"
+#include "sim/report.hpp"
+#include "sim/solve.hpp"
+#include "sim/state.hpp"
+#include "sim/system.hpp"
+
+namespace unravel {
+
+struct StepOptions {
+    Integrator integrator = Integrator::adaptive_imex;
+    double threshold = 0.2;        ///< of adaptive IMEX on κ (7)
+    double activation_band = 0.0;  ///< see extension_forces()
+    SolveOptions solve;
+    bool decompose = true;       ///< false: the whole cloth as one system
+    bool compare_whole = false;  ///< solve the undecomposed system too and report what it took
+};
+
+StepOptions step_options(const Solver& solver);
+
+/// Everything that a step computes on the way; read by inspectors, kept only for its memory.
+struct StepWorkspace {
+    Constraints constraints;
+    SolidPoses poses;
+    std::vector<std::vector<Touch>> touches_found;  ///< (chunks of particles)
+    std::vector<Touch> touches;
+    ExtensionForces extension;
+    BendLimit bend_limit;
+    std::vector<Vec3> bend;                            ///< (bend springs) N
+    std::vector<Vec3> base, impulse, drift, reaction;  ///< (particles); reaction is (constraints)
+    std::vector<std::uint32_t> parent;
+    Components components, whole;
+    System system, whole_system;
+    SolveWorkspace solve, whole_solve;
+    std::vector<ComponentSolve> solves, whole_solves;  ///< (components)
+    std::vector<Vec3> dv;                              ///< (particles) m/s
+    MeasureWorkspace measure;
+};
+
+/// A step that can't go on: what() says which step, which particle, and why.
+class SimulationError : public std::runtime_error {
+public:
+    SimulationError(const std::string& what, std::uint64_t step, std::uint32_t particle)
+        : std::runtime_error(what), step_(step), particle_(particle) {}
+    std::uint64_t step() const { return step_; }
+    std::uint32_t particle() const { return particle_; }
+
+private:
+    std::uint64_t step_;
+    std::uint32_t particle_;
+};
+
+/// Starts a state from where the scene places the cloth.
+ClothState initial_state(const Placement& placement);
+
+/// Advances the state by h seconds. On SimulationError the state is what it was before.
+StepReport step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
+                StepWorkspace& ws);
+
+}  // namespace unravel

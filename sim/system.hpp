@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/components.hpp"
+#include "sim/constraints.hpp"
+#include "sim/forces/extension.hpp"
+#include "sim/math.hpp"
+
+namespace unravel {
+
+/// A Δv = b of one step, rows in the order of its components, so that A is block diagonal (paper Fig. 5):
+/// component c owns rows [components.start[c], components.start[c+1]). Rows of fully constrained particles
+/// follow the components'; they are never solved, only multiplied once for their constraint force, and their
+/// effect on the components' rows is already in b.
+///   A = M − h ∂f/∂v − h² ∂f/∂x      (Eq. 5 times M, so that it is symmetric for unequal masses too)
+struct System {
+    /// A_rc = −(a I + w wᵀ): a spring's off-diagonal block.
+    struct Entry {
+        std::uint32_t column;
+        double a;
+        Vec3 w;
+    };
+    std::vector<std::uint32_t> row_of;  ///< (particles)
+    std::vector<std::uint32_t> start;   ///< (rows + 1) of `entries`
+    std::vector<Entry> entries;         ///< off-diagonal blocks
+    std::vector<Mat3> diagonal;         ///< (rows) [kg]
+    std::vector<Vec3> b;                ///< (rows) [kg·m/s]
+    std::size_t rows() const { return diagonal.size(); }
+};
+
+/// What the step hands to the assembly besides springs.
+struct Load {
+    std::span<const double> mass;   ///< (particles) kg
+    std::span<const Vec3> impulse;  ///< (particles) b without the springs' h K g [kg·m/s]
+    std::span<const Vec3> drift;    ///< (particles) g, how far a particle moves without the solve [m]
+};
+
+/// Assembles the system of a step of h seconds for the implicit springs of `families`.
+void assemble(std::span<const SpringFamily> families, const Load& load, const Components& components,
+              const Constraints& constraints, double h, System& out);
+
+/// (A y) of one row.
+inline Vec3 row_times(const System& A, std::uint32_t row, std::span<const Vec3> y) {
+    Vec3 sum = A.diagonal[row] * y[row];
+    for (std::uint32_t e = A.start[row]; e < A.start[row + 1]; ++e) {
+        const System::Entry& entry = A.entries[e];
+        const Vec3& yc = y[entry.column];
+        sum -= entry.a * yc + entry.w * entry.w.dot(yc);
+    }
+    return sum;
+}
+
+}  // namespace unravel
