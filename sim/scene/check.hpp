@@ -1,0 +1,36 @@
+#pragma once
+
+// What concerns several values at once. A check whose values had a problem of their own is left out, so that
+// one slip gives one message.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/scene/diagnostics.hpp"
+#include "sim/scene/fields.hpp"
+
+namespace unravel {
+
+/// What the checks of a whole scene look at and add to.
+struct Checking {
+    const Scene& scene;
+    const Places& places;
+    std::vector<SceneProblem>& problems;
+
+    void report(const std::string& path, std::string what, std::string hint) const {
+        problems.push_back({places.at(path), std::move(what), std::move(hint)});
+    }
+};
+
+void check_clip(const Checking&);                                        ///< size, frames, steps in a frame
+void check_cloths(const Checking&);                                      ///< names, number of particles
+void check_solids(const Checking&);                                      ///< names, shapes, friction
+void check_start(const Checking&);                                       ///< no solid holds a cloth
+void check_looks(const Checking&, const std::filesystem::path& folder);  ///< cameras, textures
+
+/// A pin just read, `names` being all its corners or edges: it has to catch a particle.
+void check_pin(const Fields& cloth_fields, Fields& pin_fields, const Cloth& cloth, const Pin& pin,
+               const std::vector<std::string>& names);
+
+}  // namespace unravel

@@ -1,0 +1,51 @@
+#include "sim/scene/describe.hpp"
+
+namespace unravel {
+
+namespace {
+
+constexpr std::string_view shapes[] = {"plane", "sphere", "box", "cylinder", "capsule"};
+constexpr Bounds length_bounds{1e-4, 1000, false, "m"};
+constexpr Bounds friction_bounds{0, 100};
+
+void describe(Fields& f, Friction& friction) {
+    f.number({"static", "coefficient while held", true}, friction.static_, friction_bounds);
+    f.number({"kinetic", "coefficient while sliding; default: 0.8 of static"}, friction.kinetic,
+             friction_bounds);
+}
+
+}  // namespace
+
+void describe(Fields& f, Solid& solid) {
+    f.place(solid.place);
+    f.text({"name", "for messages and reports"}, solid.name, TextKind::name);
+    f.choice({"shape", "unrotated, planes face up, cylinders and capsules stand", true}, solid.shape, shapes);
+    const Shape shape = solid.shape;
+    const bool curved = shape == Shape::sphere || shape == Shape::cylinder || shape == Shape::capsule;
+    f.number({"radius", "m; of spheres, cylinders, capsules", false, curved}, solid.radius, length_bounds);
+    f.number({"height", "m; cylinder: whole height, capsule: between the centres of its caps", false,
+              shape == Shape::cylinder || shape == Shape::capsule},
+             solid.height, length_bounds);
+    f.vector({"size", "m, edge lengths of a box", false, shape == Shape::box}, solid.size, length_bounds);
+    f.number({"round", "m, radius of the rounded edges of boxes and cylinders", false,
+              shape == Shape::box || shape == Shape::cylinder},
+             solid.round, {0, 1000, false, "m"});
+    f.vector({"center", "m"}, solid.center, position_bounds);
+    f.vector({"rotation", "degrees about x, then y, then z"}, solid.rotation, rotation_bounds);
+    f.list({"motion", "keyframes: displacement from where it stands, and rotation about the pivot"},
+           solid.motion, Layout::inline_tables, in_order<Keyframe>());
+    if (f.reading()) solid.pivot = solid.center;
+    f.vector({"pivot", "m, in the world at the start; default: the center"}, solid.pivot, position_bounds);
+    const bool plain = f.number_or_table(
+        {"friction", "a number, or {static, kinetic}; a number mu stands for static mu, kinetic 0.8 mu"},
+        solid.friction.static_, friction_bounds, [&](Fields& g) {
+            describe(g, solid.friction);
+            if (g.reading() && !g.says("kinetic")) solid.friction.kinetic = 0.8 * solid.friction.static_;
+        });
+    if (plain) solid.friction.kinetic = 0.8 * solid.friction.static_;
+    f.number({"offset", "m, distance at which cloth is held off the surface"}, solid.offset,
+             {0, 1, false, "m"});
+    f.text({"color", "\"#rrggbb\"; default: the look's"}, solid.color, TextKind::color);
+}
+
+}  // namespace unravel

@@ -1,0 +1,171 @@
+#include "sim/scene/document.hpp"
+
+// The library's own limit is 256; ours has to hold for the recursion of everything that walks the tree.
+#define TOML_MAX_NESTED_VALUES 32
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "sim/scene/limits.hpp"
+
+namespace unravel {
+
+namespace {
+
+SourcePlace place_of(const toml::source_region& region) {
+    return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), 0};
+}
+
+Node convert(const toml::node& node);
+
+Node convert_table(const toml::table& table) {
+    Node out;
+    for (const auto& [key, value] : table)
+        out.entries.push_back({std::string(key.str()), place_of(key.source()), convert(value)});
+    // The library sorts by key; problems read better in the order of the file.
+    std::stable_sort(out.entries.begin(), out.entries.end(), [](const Entry& a, const Entry& b) {
+        return std::tuple(a.place.line, a.place.column) < std::tuple(b.place.line, b.place.column);
+    });
+    return out;
+}
+
+Node convert(const toml::node& node) {
+    Node out;
+    if (const toml::table* table = node.as_table()) {
+        out = convert_table(*table);
+    } else if (const toml::array* array = node.as_array()) {
+        out.kind = Node::Kind::list;
+        for (const toml::node& item : *array) out.items.push_back(convert(item));
+    } else if (const auto* flag = node.as_boolean()) {
+        out.kind = Node::Kind::flag;
+        out.flag = flag->get();
+    } else if (const auto* integer = node.as_integer()) {
+        out.kind = Node::Kind::integer;
+        out.integer = integer->get();
+        out.number = static_cast<double>(out.integer);
+    } else if (const auto* number = node.as_floating_point()) {
+        out.kind = Node::Kind::number;
+        out.number = number->get();
+    } else if (const auto* text = node.as_string()) {
+        out.kind = Node::Kind::text;
+        out.text = text->get();
+    } else {
+        out.kind = Node::Kind::date;
+    }
+    out.place = place_of(node.source());
+    return out;
+}
+
+/// The first dotted key with more parts than anyone needs, {0, 0} if there is none. The library builds a
+/// table for each part and frees them by recursion, so a long enough key would exhaust the stack.
+SourcePlace endless_key(std::string_view text) {
+    int line = 1, column = 0;
+    std::size_t dots = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        ++column;
+        const char c = text[i];
+        if (c == '\n') {
+            ++line;
+            column = 0;
+        }
+        if (c == '\n' || c == '=' || c == ',' || c == '{' || c == '[') dots = 0;
+        if (c == '.' && ++dots >= max_key_parts) return {line, column, 0};
+        if (c == '#') {
+            while (i + 1 < text.size() && text[i + 1] != '\n') ++i;
+        }
+        if (c != '"' && c != '\'') continue;
+        const bool multi = text.substr(i, 3) == std::string(3, c);
+        const std::string_view end = text.substr(i, multi ? 3 : 1);
+        for (i += end.size(); i < text.size() && text.substr(i, end.size()) != end; ++i) {
+            if (!multi && text[i] == '\n') break;
+            if (text[i] == '\n') {
+                ++line;
+                column = 0;
+            }
+            if (c == '"' && text[i] == '\\') ++i;
+        }
+        // A multi-line text may end in up to two quotes of its own.
+        if (multi) {
+            i += 2;
+            while (i + 1 < text.size() && text[i + 1] == c) ++i;
+        } else if (i < text.size() && text[i] == '\n') {
+            --i;
+        }
+    }
+    return {};
+}
+
+void move_to_option(Node& node, int option, int shift) {
+    const auto move = [&](SourcePlace& place) { place = {1, place.column + shift, option}; };
+    move(node.place);
+    for (Node& item : node.items) move_to_option(item, option, shift);
+    for (Entry& entry : node.entries) {
+        move(entry.place);
+        move_to_option(entry.value, option, shift);
+    }
+}
+
+}  // namespace
+
+const Entry* Node::find(std::string_view key) const {
+    const auto found =
+        std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) { return entry.key == key; });
+    return found == entries.end() ? nullptr : &*found;
+}
+
+Entry* Node::find(std::string_view key) {
+    return const_cast<Entry*>(static_cast<const Node*>(this)->find(key));
+}
+
+std::string_view kind_name(Node::Kind kind) {
+    switch (kind) {
+        case Node::Kind::flag:
+            return "true or false";
+        case Node::Kind::integer:
+            return "a whole number";
+        case Node::Kind::number:
+            return "a number";
+        case Node::Kind::text:
+            return "a text";
+        case Node::Kind::date:
+            return "a date or time";
+        case Node::Kind::list:
+            return "a list";
+        case Node::Kind::table:
+            return "a table";
+    }
+    return "";
+}
+
+bool parse_document(std::string_view text, Node& root, std::vector<SceneProblem>& problems) {
+    if (const SourcePlace place = endless_key(text); place.line > 0) {
+        problems.push_back({place, "a key of more than 16 parts", ""});
+        return false;
+    }
+    try {
+        root = convert_table(toml::parse(text));
+        root.place = {1, 1, 0};
+        return true;
+    } catch (const toml::parse_error& error) {
+        problems.push_back(
+            {place_of(error.source()), "this is not TOML: " + std::string(error.description()), ""});
+        return false;
+    }
+}
+
+bool parse_value(std::string_view text, int option, int shift, Node& value) {
+    const std::string line = "v=" + std::string(text);
+    if (endless_key(line).line > 0) return false;
+    try {
+        const toml::table table = toml::parse(line);
+        if (table.size() != 1) return false;
+        value = convert(*table.get("v"));
+        move_to_option(value, option, shift - 2);
+        return true;
+    } catch (const toml::parse_error&) {
+        return false;
+    }
+}
+
+}  // namespace unravel
