@@ -1,0 +1,49 @@
+#pragma once
+
+// The table of encoders, and opening one of them. Used by VideoWriter and probe_encoders().
+
+#include <string>
+#include <vector>
+
+#include "render/av.hpp"
+#include "render/video.hpp"
+
+namespace unravel::av {
+
+/// A container, by the file's ending.
+struct Container {
+    const char* ending;  ///< ".mp4"
+    const char* muxer;   ///< FFmpeg's name of it
+};
+
+/// An encoder with what it needs to be told. Options are FFmpeg's own, "key=value:key=value".
+struct EncoderEntry {
+    const char* ending;
+    const char* codec;
+    AVPixelFormat pixels;
+    const char* options;
+    const char* quality_option;  ///< what --crf sets; null: it has no such setting
+    int quality;                 ///< its default
+    const char* effort_option;   ///< what --preset sets; null: none
+    const char* effort;          ///< its default
+};
+
+/// An encoder that opened.
+struct OpenEncoder {
+    Codec context;
+    std::string description;
+};
+
+/// The container for this ending; throws VideoError with the endings there are.
+const Container& container_for(const std::filesystem::path& file);
+
+/// All entries for an ending, in the order in which they are tried.
+std::vector<const EncoderEntry*> encoders_for(const Container& container);
+
+/// Opens one encoder. Throws VideoError saying why it does not open.
+OpenEncoder open_encoder(const EncoderEntry& entry, const VideoSettings& settings);
+
+/// The one asked for, or the first that opens. Throws VideoError with those that do open.
+OpenEncoder choose_encoder(const Container& container, const VideoSettings& settings);
+
+}  // namespace unravel::av
