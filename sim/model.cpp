@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "sim/random.hpp"
-#include "sim/solids/motion.hpp"
+#include "sim/scene/placement.hpp"
 
 namespace unravel {
 
@@ -34,9 +33,8 @@ struct Grid {
     double width_v(int j) const { return nv() == 1 ? b : j > 0 && j + 1 < nv() ? b : 0.5 * b; }
     // Place on the cloth's own square; halves stand for the middles of springs.
     Vec2 uv(double i, double j) const {
-        const double columns = patch.cells_u() > 0 ? patch.cells_u() : 1,
-                     rows = patch.cells_v() > 0 ? patch.cells_v() : 1;
-        return {i / columns, j / rows};
+        return {patch.cells_u() > 0 ? i / patch.cells_u() : 0.5,
+                patch.cells_v() > 0 ? j / patch.cells_v() : 0.5};
     }
 };
 
@@ -132,67 +130,25 @@ void add_bends(const Grid& g, BendSprings& bends) {
 
 void place(const Grid& g, Placement& placement) {
     const Cloth& cloth = g.cloth;
-    const Eigen::Matrix3d turn = rotation_from_degrees(cloth.rotation);
-    // The ring whose chords, not arcs, have the rest length: a tube starts unstretched.
-    const double radius = g.patch.tube ? g.a / (2 * std::sin(std::numbers::pi / g.nu())) : 0;
+    const Vec3 up = rotation_matrix(cloth.rotation) * Vec3::UnitY();
     for (int j = 0; j < g.nv(); ++j) {
         for (int i = 0; i < g.nu(); ++i) {
-            const Vec2 uv = g.uv(i, j);
-            const double along = g.nv() > 1 ? (uv.y() - 0.5) * cloth.size[1] * cloth.placed_scale[1] : 0;
-            const double index = static_cast<double>(g.patch.at(i, j) - g.patch.first);
-            const double off =
-                cloth.jitter > 0
-                    ? cloth.jitter * seeded_uniform(cloth.seed, static_cast<std::uint64_t>(index))
-                    : 0.0;
-            Vec3 local;
-            if (g.patch.tube) {
-                const double angle = 2 * std::numbers::pi * i / g.nu();
-                const double r = radius * cloth.placed_scale[0] + off;
-                local = {r * std::sin(angle), r * std::cos(angle), along};
-            } else {
-                const double across = g.nu() > 1 ? (uv.x() - 0.5) * cloth.size[0] * cloth.placed_scale[0] : 0;
-                local = {across, off, along};
-            }
-            placement.x.push_back(cloth.center + turn * local);
+            Vec3 x = placed_particle(cloth, i, j);
+            if (cloth.jitter > 0)
+                x += cloth.jitter * seeded_uniform(cloth.seed, placement.x.size() - g.patch.first) * up;
+            placement.x.push_back(x);
             placement.v.push_back(cloth.velocity);
         }
     }
 }
 
-bool pinned(const Grid& g, const Pin& pin, int i, int j) {
-    const Vec2 uv = g.uv(i, j);
-    switch (pin.target) {
-        case PinTarget::corner:
-            return (i == 0 || i + 1 == g.nu()) && (j == 0 || j + 1 == g.nv()) &&
-                   (pin.name[1] == '0' ? i == 0 : i + 1 == g.nu()) &&
-                   (pin.name[3] == '0' ? j == 0 : j + 1 == g.nv());
-        case PinTarget::edge: {
-            const int at = pin.name[0] == 'u' ? i : j, count = pin.name[0] == 'u' ? g.nu() : g.nv();
-            return pin.name[1] == '0' ? at == 0 : at + 1 == count;
-        }
-        case PinTarget::particles:
-            return i >= pin.range[0] && i <= pin.range[1] && j >= pin.range[2] && j <= pin.range[3];
-        case PinTarget::box:
-            return inside(pin.box, uv);
-        case PinTarget::disc: {
-            const Vec2 d{(uv.x() - pin.disc.center.x()) * g.cloth.size[0],
-                         (uv.y() - pin.disc.center.y()) * g.cloth.size[1]};
-            return d.norm() <= pin.disc.radius;
-        }
-    }
-    return false;
-}
-
 void add_pins(const Grid& g, const Placement& placement, std::vector<PinnedGroup>& groups) {
     for (const Pin& pin : g.cloth.pins) {
         PinnedGroup group;
-        for (int j = 0; j < g.nv(); ++j) {
-            for (int i = 0; i < g.nu(); ++i) {
-                if (!pinned(g, pin, i, j)) continue;
-                group.particles.push_back(g.patch.at(i, j));
-                group.start.push_back(placement.x[g.patch.at(i, j)]);
-                group.centre += group.start.back();
-            }
+        for (const std::size_t index : pinned_particles(g.cloth, pin)) {
+            group.particles.push_back(g.patch.first + static_cast<std::uint32_t>(index));
+            group.start.push_back(placement.x[group.particles.back()]);
+            group.centre += group.start.back();
         }
         if (group.particles.empty()) continue;
         group.centre /= static_cast<double>(group.particles.size());

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "sim/frame_record.hpp"
+#include "sim/model.hpp"
+#include "sim/scene/scene.hpp"
+#include "sim/step.hpp"
+
+namespace unravel {
+
+/// A simulation under way: the model, where it stands, and the memory of its steps.
+struct Simulation {
+    ClothModel model;
+    StepOptions options;
+    int fps = 30;
+    int steps_per_frame = 1;
+    ClothState state;
+    int frame = 0;  ///< the last one reached
+    StepWorkspace ws;
+};
+
+/// A simulation at the scene's start, frame 0.
+Simulation start_simulation(const Scene& scene);
+
+/// Goes on from a record instead of from the start.
+void restore(Simulation& simulation, const FrameRecord& record);
+
+/// The frame that the simulation stands at, before any step.
+FrameRecord first_record(const Simulation& simulation);
+
+/// Steps to the next frame. Frame k is reached at exactly k/fps: time is counted in steps, not summed. Throws
+/// SimulationError, after which the simulation stands where the failing step began.
+FrameRecord next_record(Simulation& simulation);
+
+/// Steps of a frame for a step size that divides it (checked when the scene is loaded).
+int steps_per_frame(const Scene& scene);
+
+}  // namespace unravel

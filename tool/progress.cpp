@@ -1,0 +1,55 @@
+#include "tool/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace unravel {
+
+std::string duration_text(double seconds) {
+    const long s = std::lround(std::max(seconds, 0.0));
+    if (s >= 3600) return fmt::format("{} h {:02} min", s / 3600, s % 3600 / 60);
+    if (s >= 60) return fmt::format("{} min {:02} s", s / 60, s % 60);
+    return fmt::format("{} s", s);
+}
+
+Progress::Progress(std::string what, int total, bool quiet)
+    : what_(std::move(what)), total_(total), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+    finish();
+}
+
+void Progress::show(int done, int free) {
+    if (quiet_) return;
+    const auto now = Clock::now();
+    const bool last = done == total_;
+    const double since = std::chrono::duration<double>(now - shown_).count();
+    if (shown_ != Clock::time_point{} && since < (terminal_ ? 0.1 : 5.0) && !last) return;
+    shown_ = now;
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    const int worked = done - free;
+    std::string line = fmt::format("{}: frame {} of {}", what_, done, total_);
+    if (worked > 0) {
+        const double each = elapsed / worked;
+        line += fmt::format(
+            ", {:.0f} ms per frame, {}", 1e3 * each,
+            last ? duration_text(elapsed) + " in all" : duration_text(each * (total_ - done)) + " left");
+    }
+    if (terminal_) {
+        fmt::print(stderr, "\r\x1b[K{}", line);
+        open_ = true;
+    } else {
+        fmt::print(stderr, "{}\n", line);
+    }
+    std::fflush(stderr);
+}
+
+void Progress::finish() {
+    if (open_) fmt::print(stderr, "\n");
+    open_ = false;
+}
+
+}  // namespace unravel

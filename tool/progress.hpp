@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace unravel {
+
+/// Frame k of n, time per frame and time left: one line that is rewritten on a terminal, a plain line now and
+/// then elsewhere. Goes to standard error. The rate is that of frames done by this process, so it is right
+/// after a resume.
+class Progress {
+public:
+    Progress(std::string what, int total, bool quiet);
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    /// `done` frames are finished in all; `free` ones of them cost this process nothing.
+    void show(int done, int free);
+    /// Ends the line. Called once, when all is done or will not be.
+    void finish();
+
+private:
+    using Clock = std::chrono::steady_clock;
+    std::string what_;
+    int total_;
+    bool quiet_, terminal_, open_ = false;
+    Clock::time_point start_ = Clock::now(), shown_{};
+};
+
+/// "1 h 02 min", "3 min 05 s", "12 s".
+std::string duration_text(double seconds);
+
+}  // namespace unravel

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "render/draw_scene.hpp"
+#include "sim/frame_record.hpp"
+#include "sim/scene/scene.hpp"
+
+namespace unravel {
+
+/// Where a run's files are. Every one of them appears whole or not at all.
+struct RunFolder {
+    std::filesystem::path root;
+
+    std::filesystem::path scene() const { return root / "scene.toml"; }
+    std::filesystem::path run_json() const { return root / "run.json"; }
+    std::filesystem::path stats() const { return root / "stats.csv"; }
+    std::filesystem::path cache() const { return root / "cache"; }
+    std::filesystem::path frames() const { return root / "frames"; }
+    std::filesystem::path record(int frame) const;
+    std::filesystem::path picture(DrawStyle style, int frame) const;
+    std::filesystem::path video(DrawStyle style, const std::string& ending) const;
+};
+
+const char* style_name(DrawStyle style);
+
+/// What was asked for cannot be done with the folder as it is; what() says how to go on. Exit code 2.
+class FolderError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+enum class Existing { refuse, resume, replace };
+
+/// Makes the folder ready for a run of this scene: creates it, removes what a killed run left half-written,
+/// and where a run is there already refuses, goes on from it, or removes it. Going on with a changed scene is
+/// refused with what changed. Returns the scene's hash, which ties cache files to it. Throws FolderError,
+/// OutputError.
+std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing existing);
+
+/// Frames 0 … k−1 that the cache holds whole and undamaged; the first that is missing ends the list.
+int cached_frames(const RunFolder& folder, const Scene& scene, std::uint64_t scene_hash,
+                  std::size_t particles, std::size_t springs);
+
+/// Hash of the scene as run. Only what changes the simulation counts.
+std::uint64_t scene_hash(const Scene& scene);
+
+}  // namespace unravel
