@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "render/image.hpp"
+
 namespace unravel {
 
 using Vec3f = Eigen::Vector3f;
@@ -39,6 +41,7 @@ struct ClothMesh {
         triangles;                                    ///< vertex indices, counter-clockwise from the front
     std::vector<std::array<std::uint32_t, 2>> edges;  ///< particle indices, the springs drawn as wires
     ClothAppearance appearance;
+    Image texture;  ///< appearance.texture decoded; spans the cloth once, on its front; empty: the weave
 };
 
 enum class SolidShape { plane, sphere, box, cylinder, capsule };
@@ -47,7 +50,7 @@ struct SolidMesh {
     SolidShape shape = SolidShape::sphere;
     float radius = 0.3f, height = 1.0f, round = 0.0f;  ///< m; cylinders and capsules stand along y, capsules'
                                                        ///< height is between the centres of their caps
-    Vec3f size{1, 1, 1};  ///< box: full edge lengths [m]
+    Vec3f size{1, 1, 1};                               ///< box: full edge lengths [m]
     Rgb color{201, 183, 156};
 };
 
@@ -64,6 +67,8 @@ struct DrawScene {
     bool show_ground = true;
     float ground_height = 0;  ///< m
     Rgb ground{141, 144, 150};
+    Rgb components_background{27, 30, 36};  ///< of the component view: dark, so that white and every hue read
+    Vec3f key_direction{-0.35f, 0.8f, 0.5f};  ///< towards the key light; need not be unit
     Vec3f bounds_low{-1, 0, -1},
         bounds_high{1, 1, 1};  ///< m, of everything over the clip; aims light and shadow
 };

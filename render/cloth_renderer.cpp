@@ -1,0 +1,123 @@
+#include "render/cloth_renderer.hpp"
+
+#include <algorithm>
+
+#include "render/color.hpp"
+#include "render/normals.hpp"
+#include "render/shadow.hpp"
+
+namespace unravel {
+
+namespace {
+
+void upload_texture(GLuint texture, const Image& image) {
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, image.width, image.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                 image.pixels.data());
+    glGenerateMipmap(GL_TEXTURE_2D);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
+        glTexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAX_ANISOTROPY_EXT, 8);
+}
+
+Vec3f mix(const Vec3f& a, const Vec3f& b, float t) {
+    return a + t * (b - a);
+}
+
+}  // namespace
+
+ClothRenderer::ClothRenderer(const DrawScene& scene)
+    : fabric_({"frame.glsl", "sky.glsl", "cloth.vert"},
+              {"frame.glsl", "light.glsl", "weave.glsl", "cloth.frag"}) {
+    ShadowMaps::connect(fabric_);
+    fabric_.sampler("picture", 0);
+    uniforms_ = {fabric_.uniform("weave"),        fabric_.uniform("period"),
+                 fabric_.uniform("thread"),       fabric_.uniform("yarn_front"),
+                 fabric_.uniform("yarn_back"),    fabric_.uniform("has_picture"),
+                 fabric_.uniform("picture_scale")};
+    std::size_t most = 0, particles = 0;
+    for (const ClothMesh& mesh : scene.cloths) {
+        Cloth& cloth = cloths_.emplace_back();
+        cloth.mesh = &mesh;
+        const std::size_t count = mesh.particle.size();
+        most = std::max(most, count);
+        for (const std::uint32_t p : mesh.particle) particles = std::max<std::size_t>(particles, p + 1);
+
+        glBindVertexArray(cloth.vertex_array);
+        allocate_buffer(GL_ARRAY_BUFFER, cloth.vertices, count * sizeof(Vertex));
+        float_attribute(0, 3, sizeof(Vertex), 0);
+        float_attribute(1, 3, sizeof(Vertex), sizeof(Vec3f));
+        fill_buffer(GL_ARRAY_BUFFER, cloth.uvs, mesh.uv);
+        float_attribute(2, 2, sizeof(Vec2f), 0);
+        allocate_buffer(GL_ARRAY_BUFFER, cloth.colors, count * 4);
+        glEnableVertexAttribArray(3);
+        glVertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, 4, nullptr);
+        fill_buffer(GL_ELEMENT_ARRAY_BUFFER, cloth.indices, mesh.triangles);
+        glBindVertexArray(0);
+
+        if (!mesh.texture.pixels.empty()) {
+            upload_texture(cloth.texture, mesh.texture);
+            Vec2f extent(1e-6f, 1e-6f);
+            for (const Vec2f& uv : mesh.uv) extent = extent.cwiseMax(uv);
+            cloth.picture_scale = extent.cwiseInverse();
+        }
+    }
+    normals_.resize(particles);
+    scratch_.resize(most);
+    scratch_colors_.resize(most);
+}
+
+void ClothRenderer::update_shape(const DrawFrame& frame) {
+    for (const Cloth& cloth : cloths_) {
+        const std::vector<std::uint32_t>& particle = cloth.mesh->particle;
+        smooth_normals(*cloth.mesh, frame.positions, normals_);
+        for (std::size_t i = 0; i < particle.size(); ++i)
+            scratch_[i] = {frame.positions[particle[i]], normals_[particle[i]]};
+        update_buffer(GL_ARRAY_BUFFER, cloth.vertices, std::span(scratch_).first(particle.size()));
+    }
+}
+
+void ClothRenderer::update_colors(const DrawFrame& frame) {
+    for (const Cloth& cloth : cloths_) {
+        const std::vector<std::uint32_t>& particle = cloth.mesh->particle;
+        for (std::size_t i = 0; i < particle.size(); ++i) {
+            const Rgb c = frame.particle_colors[particle[i]];
+            scratch_colors_[i] = {c.r, c.g, c.b, 255};
+        }
+        update_buffer(GL_ARRAY_BUFFER, cloth.colors, std::span(scratch_colors_).first(particle.size()));
+    }
+}
+
+void ClothRenderer::draw_triangles(const Cloth& cloth) const {
+    glBindVertexArray(cloth.vertex_array);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * cloth.mesh->triangles.size()), GL_UNSIGNED_INT,
+                   nullptr);
+}
+
+void ClothRenderer::draw_shapes() const {
+    for (const Cloth& cloth : cloths_) draw_triangles(cloth);
+}
+
+void ClothRenderer::draw_fabric() const {
+    fabric_.use();
+    for (const Cloth& cloth : cloths_) {
+        const ClothAppearance& look = cloth.mesh->appearance;
+        const Vec3f front = linear(look.front), second = linear(look.front_second), back = linear(look.back);
+        const std::array<Vec3f, 2> yarn_front{front, second}, yarn_back{back, mix(back, second, 0.3f)};
+        const bool has_picture = !cloth.mesh->texture.pixels.empty();
+        glUniform1i(uniforms_.weave, static_cast<int>(look.weave));
+        glUniform1f(uniforms_.period, look.period);
+        // Coarser than real yarn, so that the weave is seen at the distance a whole cloth is shown from.
+        glUniform1f(uniforms_.thread, look.period / 24);
+        glUniform3fv(uniforms_.yarn_front, 2, yarn_front[0].data());
+        glUniform3fv(uniforms_.yarn_back, 2, yarn_back[0].data());
+        glUniform1i(uniforms_.has_picture, has_picture);
+        glUniform2fv(uniforms_.picture_scale, 1, cloth.picture_scale.data());
+        glActiveTexture(GL_TEXTURE0);
+        glBindTexture(GL_TEXTURE_2D, has_picture ? GLuint{cloth.texture} : 0);
+        draw_triangles(cloth);
+    }
+}
+
+}  // namespace unravel

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "render/draw_scene.hpp"
+#include "render/gl_objects.hpp"
+
+namespace unravel {
+
+/// The cloths as surfaces: into shadow maps, as fabric, and as the ground that wires are drawn on.
+class ClothRenderer {
+public:
+    explicit ClothRenderer(const DrawScene& scene);
+
+    /// New positions and smooth normals.
+    void update_shape(const DrawFrame& frame);
+    /// New colours of the component view.
+    void update_colors(const DrawFrame& frame);
+
+    /// Triangles only: position at attribute 0, normal at 1, uv at 2, colour at 3.
+    void draw_shapes() const;
+    void draw_fabric() const;
+
+private:
+    struct Vertex {
+        Vec3f position, normal;
+    };
+    struct Cloth {
+        const ClothMesh* mesh = nullptr;
+        GlVertexArray vertex_array;
+        GlBuffer vertices, uvs, colors, indices;
+        GlTexture texture;
+        Vec2f picture_scale{1, 1};  ///< 1/m
+    };
+    struct Uniforms {
+        GLint weave, period, thread, yarn_front, yarn_back, has_picture, picture_scale;
+    };
+    void draw_triangles(const Cloth& cloth) const;
+
+    std::vector<Cloth> cloths_;
+    std::vector<Vec3f> normals_;   ///< (particles)
+    std::vector<Vertex> scratch_;  ///< of one cloth at a time
+    std::vector<std::array<std::uint8_t, 4>> scratch_colors_;
+    GlProgram fabric_;
+    Uniforms uniforms_;
+};
+
+}  // namespace unravel

@@ -1,0 +1,217 @@
+#include "render/renderer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "render/camera.hpp"
+#include "render/cloth_renderer.hpp"
+#include "render/color.hpp"
+#include "render/frame_block.hpp"
+#include "render/framebuffer.hpp"
+#include "render/readback.hpp"
+#include "render/shadow.hpp"
+#include "render/solid_renderer.hpp"
+#include "render/wire_renderer.hpp"
+
+namespace unravel {
+
+namespace {
+
+constexpr float key_strength = 1.05f, fill_strength = 0.16f, sky_strength = 0.42f;
+
+/// The part of the frame block that is the same for every frame and style.
+FrameBlock fixed_block(const DrawScene& scene, const ShadowMaps& shadows, float reach) {
+    FrameBlock block{};
+    shadows.describe(block);
+    const Vec3f key = scene.key_direction.normalized();
+    // A lamp of warm white, a cooler fill from the other side, a sky tinted by the background, light off the
+    // ground.
+    block.key_color << key_strength * Vec3f(1.0f, 0.965f, 0.91f), 0;
+    block.fill_direction << Vec3f(-key.x(), 0.35f, -0.4f * key.z()).normalized(), 0;
+    block.fill_color << fill_strength * Vec3f(0.86f, 0.93f, 1.0f), 0;
+    const Vec3f background = linear(scene.background);
+    const float brightest = std::max(background.maxCoeff(), 0.05f);
+    const Vec3f sky = 0.5f * (Vec3f(0.90f, 0.95f, 1.0f) + background / brightest);
+    block.sky_color << sky_strength * sky, 0;
+    const Vec3f ground = scene.show_ground ? linear(scene.ground) : Vec3f(0.2f, 0.2f, 0.2f);
+    block.bounce_color << (0.5f * ground + Vec3f::Constant(0.03f)), 0;
+    const Vec3f centre = 0.5f * (scene.bounds_low + scene.bounds_high);
+    block.ground << centre.x(), centre.z(), 0.2f * reach, 0.95f * reach;
+    return block;
+}
+
+}  // namespace
+
+struct Renderer::Parts {
+    const DrawScene* scene;
+    RenderSettings settings;
+    std::string renderer;
+    Framebuffer framebuffer;
+    Readback readback;
+    SolidRenderer solids;
+    ShadowMaps shadows;
+    ClothRenderer cloths;
+    WireRenderer wires;
+    GlProgram depth{{"depth.vert"}, {"depth.frag"}};
+    GlProgram surface{{"frame.glsl", "surface.vert"}, {"frame.glsl", "surface.frag"}};
+    GLint depth_transform = depth.uniform("transform"), surface_strength = surface.uniform("strength");
+    SolidRenderer::SurfaceUniforms surface_uniforms{surface.uniform("model"), surface.uniform("tint"),
+                                                    surface.uniform("fades"), surface.uniform("fade_centre")};
+    GlBuffer block_buffer;
+    FrameBlock block;
+    std::size_t particles = 0, edges = 0;
+
+    Parts(const GlContext& context, const DrawScene& draw_scene, const RenderSettings& asked)
+        : scene(&draw_scene),
+          settings(asked),
+          renderer(context.renderer()),
+          framebuffer(context, asked.width, asked.height, asked.samples, asked.supersample),
+          readback(asked.width, asked.height),
+          solids(draw_scene),
+          shadows(draw_scene, context.software() ? 1024 : 2048),
+          cloths(draw_scene),
+          wires(draw_scene),
+          block(fixed_block(draw_scene, shadows, solids.reach())) {
+        allocate_buffer(GL_UNIFORM_BUFFER, block_buffer, sizeof(FrameBlock));
+        for (const ClothMesh& mesh : draw_scene.cloths) {
+            for (const std::uint32_t p : mesh.particle) particles = std::max<std::size_t>(particles, p + 1);
+            edges += mesh.edges.size();
+        }
+    }
+
+    void check(DrawStyle style, const DrawFrame& frame) const;
+    void update_block(DrawStyle style, const CameraView& view);
+    void draw_textured(const DrawFrame& frame);
+    void draw_components(const DrawFrame& frame);
+    void clear(Rgb background) const;
+    int height() const { return framebuffer.height() * framebuffer.supersample(); }
+};
+
+void Renderer::Parts::check(DrawStyle style, const DrawFrame& frame) const {
+    if (frame.positions.size() < particles || frame.solid_poses.size() < scene->solids.size())
+        throw std::invalid_argument("a frame lacks positions or poses that its scene needs");
+    if (style == DrawStyle::components && frame.particle_colors.size() < particles)
+        throw std::invalid_argument("a frame of the component view lacks particle colours");
+    if (!frame.edge_strength.empty() && frame.edge_strength.size() != edges)
+        throw std::invalid_argument("a frame's edge strengths are not one for each edge");
+}
+
+void Renderer::Parts::update_block(DrawStyle style, const CameraView& view) {
+    const float aspect = static_cast<float>(framebuffer.width()) / static_cast<float>(framebuffer.height());
+    const Camera camera =
+        make_camera(view, aspect, scene->bounds_low, scene->bounds_high, 1.5f * solids.reach());
+    const int factor = framebuffer.supersample();
+    block.view_projection = camera.projection * camera.view;
+    block.eye << camera.position, 1;
+    block.background << linear(style == DrawStyle::textured ? scene->background
+                                                            : scene->components_background),
+        1;
+    block.viewport << static_cast<float>(framebuffer.width() * factor), static_cast<float>(height()),
+        camera.pixels_per_radian * static_cast<float>(height()), std::min(0.004f, 0.3f * wires.spacing());
+    update_buffer(GL_UNIFORM_BUFFER, block_buffer, std::span<const FrameBlock>(&block, 1));
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, block_buffer);
+}
+
+void Renderer::Parts::clear(Rgb background) const {
+    const Vec3f c = linear(background);
+    glClearColor(c.x(), c.y(), c.z(), 1);
+    glDepthMask(GL_TRUE);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+}
+
+void Renderer::Parts::draw_textured(const DrawFrame& frame) {
+    cloths.update_shape(frame);
+    shadows.draw([&](const Eigen::Matrix4f& transform) {
+        depth.use();
+        solids.draw_shapes(frame, depth_transform, transform);
+        glUniformMatrix4fv(depth_transform, 1, GL_FALSE, transform.data());
+        cloths.draw_shapes();
+    });
+    framebuffer.bind();
+    clear(scene->background);
+    shadows.bind();
+    cloths.draw_fabric();
+    glEnable(GL_CULL_FACE);
+    solids.draw_shaded(frame);
+    glDisable(GL_CULL_FACE);
+}
+
+void Renderer::Parts::draw_components(const DrawFrame& frame) {
+    cloths.update_shape(frame);
+    cloths.update_colors(frame);
+    wires.update(frame);
+    const Vec3f centre = 0.5f * (scene->bounds_low + scene->bounds_high);
+    const float gap =
+        wires.spacing() * block.viewport.z() / std::max((centre - frame.camera.position).norm(), 1e-3f);
+    const float relative_gap = gap * 720 / static_cast<float>(height());
+
+    framebuffer.bind();
+    clear(scene->components_background);
+    surface.use();
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1, 1);
+    const Eigen::Matrix4f identity = Eigen::Matrix4f::Identity();
+    glUniformMatrix4fv(surface_uniforms.model, 1, GL_FALSE, identity.data());
+    glUniform4f(surface_uniforms.tint, 0.02f, 0.022f, 0.027f, 0);
+    glUniform1i(surface_uniforms.fades, 0);
+    // The denser the springs, the more of a component's colour its surface carries.
+    glUniform1f(surface_strength, std::clamp(0.55f - 0.05f * relative_gap, 0.12f, 0.5f));
+    cloths.draw_shapes();
+    solids.draw_quiet(frame, surface_uniforms);
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    wires.draw(height(), gap);
+}
+
+Renderer::Renderer(const GlContext& context, const DrawScene& scene, RenderSettings settings)
+    : parts_(std::make_unique<Parts>(context, scene, settings)) {}
+
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+void Renderer::submit(DrawStyle style, const DrawFrame& frame) {
+    parts_->check(style, frame);
+    if (pending() == Readback::depth)
+        throw std::invalid_argument("collect a frame before submitting another");
+    parts_->update_block(style, frame.camera);
+    if (style == DrawStyle::textured)
+        parts_->draw_textured(frame);
+    else
+        parts_->draw_components(frame);
+    parts_->framebuffer.resolve();
+    parts_->readback.start();
+}
+
+void Renderer::collect(Image& out) {
+    if (pending() == 0) throw std::invalid_argument("there is no frame under way");
+    parts_->readback.finish(out);
+}
+
+int Renderer::pending() const {
+    return parts_->readback.pending();
+}
+
+void Renderer::draw(DrawStyle style, const DrawFrame& frame, Image& out) {
+    if (pending() > 0) throw std::invalid_argument("draw() while frames of submit() are under way");
+    submit(style, frame);
+    collect(out);
+}
+
+std::string Renderer::description() const {
+    const Framebuffer& framebuffer = parts_->framebuffer;
+    std::string text = fmt::format("{}, {}×{}, {} samples", parts_->renderer, framebuffer.width(),
+                                   framebuffer.height(), framebuffer.samples());
+    if (framebuffer.samples() != parts_->settings.samples)
+        text += fmt::format(" ({} asked; this renderer has no more)", parts_->settings.samples);
+    if (framebuffer.supersample() > 1)
+        text += fmt::format(", supersampled {0}×{0}", framebuffer.supersample());
+    return text;
+}
+
+}  // namespace unravel

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "render/draw_scene.hpp"
+#include "render/gl_context.hpp"
+#include "render/image.hpp"
+
+namespace unravel {
+
+struct RenderSettings {
+    int width = 1280, height = 720;  ///< px
+    int samples = 8;                 ///< per pixel; clamped to what the renderer offers
+    int supersample = 1;             ///< each pixel is the mean of supersample² drawn ones
+};
+
+/// Draws the frames of one scene. Lives on the context's thread. Everything is created with it: drawing
+/// allocates nothing on the renderer.
+class Renderer {
+public:
+    /// `context` and `scene` must outlive the renderer. Throws RendererError where the size is beyond the
+    /// renderer.
+    Renderer(const GlContext& context, const DrawScene& scene, RenderSettings settings);
+    ~Renderer();
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+
+    /// Draws one frame into `out`, whose memory is reused. Throws std::invalid_argument where the frame's
+    /// arrays do not fit the scene, or where frames of submit() are under way.
+    void draw(DrawStyle style, const DrawFrame& frame, Image& out);
+
+    /// The same in two halves, so that a GPU draws while earlier frames travel: up to three may be under way.
+    void submit(DrawStyle style, const DrawFrame& frame);
+    void collect(Image& out);  ///< the oldest frame under way
+    int pending() const;
+
+    /// One line: renderer, samples asked and given, supersampling.
+    std::string description() const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace unravel

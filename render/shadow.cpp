@@ -1,0 +1,123 @@
+#include "render/shadow.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "render/camera.hpp"
+
+namespace unravel {
+
+namespace {
+
+/// Parallel projection from `direction` that maps the sphere (centre, radius) to clip space.
+Eigen::Matrix4f parallel(const Vec3f& centre, float radius, const Vec3f& direction) {
+    Eigen::Matrix4f squeeze = Eigen::Matrix4f::Identity();
+    squeeze(0, 0) = squeeze(1, 1) = 1 / radius;
+    squeeze(2, 2) = -1 / radius;
+    squeeze(2, 3) = -2;  // the eye stands two radii away
+    return squeeze * look_at(centre + 2 * radius * direction, centre, Vec3f(0, 1, 0));
+}
+
+/// Clip space to a tile of a texture: x, y, z in [0, 1] scaled and moved.
+Eigen::Matrix4f to_texture(float scale_x, float scale_y, float x, float y) {
+    Eigen::Matrix4f m = Eigen::Matrix4f::Identity();
+    m.diagonal() << 0.5f * scale_x, 0.5f * scale_y, 0.5f, 1;
+    m.col(3) << 0.5f * scale_x + x, 0.5f * scale_y + y, 0.5f, 1;
+    return m;
+}
+
+void make_depth_map(GLuint texture, GLuint framebuffer, int width, int height) {
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, width, height, 0, GL_DEPTH_COMPONENT,
+                 GL_UNSIGNED_INT, nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, texture, 0);
+    glDrawBuffer(GL_NONE);
+    glReadBuffer(GL_NONE);
+}
+
+void make_sampler(GLuint sampler, GLint filter, GLint compare) {
+    glSamplerParameteri(sampler, GL_TEXTURE_MIN_FILTER, filter);
+    glSamplerParameteri(sampler, GL_TEXTURE_MAG_FILTER, filter);
+    glSamplerParameteri(sampler, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glSamplerParameteri(sampler, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_MODE, compare);
+    glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+}
+
+}  // namespace
+
+ShadowMaps::ShadowMaps(const DrawScene& scene, int key_size)
+    : key_size_(key_size),
+      radius_(0.52f * (scene.bounds_high - scene.bounds_low).norm()),
+      key_direction_(scene.key_direction.normalized()) {
+    const Vec3f centre = 0.5f * (scene.bounds_low + scene.bounds_high);
+    key_transform_ = parallel(centre, radius_, key_direction_);
+    for (int k = 0; k < FrameBlock::sky_directions; ++k) {
+        // Two rings, the upper one turned by half a step: together they spread evenly over the half sphere.
+        const float height = k < 4 ? 0.85f : 0.32f, across = std::sqrt(1 - height * height);
+        const float angle = std::numbers::pi_v<float> / 4 * (2 * (k % 4) + (k < 4 ? 0.4f : 1.4f));
+        sky_directions_[k] = {across * std::cos(angle), height, across * std::sin(angle)};
+        sky_transforms_[k] = parallel(centre, radius_, sky_directions_[k]);
+    }
+    make_depth_map(key_map_, key_target_, key_size_, key_size_);
+    make_depth_map(sky_maps_, sky_target_, columns * tile, rows * tile);
+    make_sampler(compare_, GL_LINEAR, GL_COMPARE_REF_TO_TEXTURE);
+    make_sampler(depth_, GL_NEAREST, GL_NONE);
+}
+
+void ShadowMaps::describe(FrameBlock& block) const {
+    block.shadow_matrix = to_texture(1, 1, 0, 0) * key_transform_;
+    constexpr float width = 1.f / columns, height = 1.f / rows;
+    for (int k = 0; k < FrameBlock::sky_directions; ++k) {
+        block.sky_matrix[k] =
+            to_texture(width, height, (k % columns) * width, (k / columns) * height) * sky_transforms_[k];
+        block.sky_direction[k] << sky_directions_[k], 0;
+    }
+    // A lamp about six degrees across: penumbras as wide as a twentieth of the distance to what casts them.
+    block.key_direction << key_direction_, 0.05f;
+    block.shadow << 2 * radius_ / key_size_, 2 * radius_, 2 * radius_ / tile, 0;
+}
+
+void ShadowMaps::draw(const DrawCasters& draw_casters) const {
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);  // a cloth has no inside
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1.5f, 2);
+    glBindFramebuffer(GL_FRAMEBUFFER, key_target_);
+    glViewport(0, 0, key_size_, key_size_);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    draw_casters(key_transform_);
+
+    glBindFramebuffer(GL_FRAMEBUFFER, sky_target_);
+    glViewport(0, 0, columns * tile, rows * tile);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    for (int k = 0; k < FrameBlock::sky_directions; ++k) {
+        glViewport((k % columns) * tile, (k / columns) * tile, tile, tile);
+        draw_casters(sky_transforms_[k]);
+    }
+    glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void ShadowMaps::bind() const {
+    const auto bind_unit = [](int unit, GLuint texture, GLuint sampler) {
+        glActiveTexture(GL_TEXTURE0 + unit);
+        glBindTexture(GL_TEXTURE_2D, texture);
+        glBindSampler(unit, sampler);
+    };
+    bind_unit(unit_compare, key_map_, compare_);
+    bind_unit(unit_depth, key_map_, depth_);
+    bind_unit(unit_sky, sky_maps_, compare_);
+}
+
+void ShadowMaps::connect(const GlProgram& program) {
+    program.sampler("shadow_compare", unit_compare);
+    program.sampler("shadow_depth", unit_depth);
+    program.sampler("sky_maps", unit_sky);
+}
+
+}  // namespace unravel

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+
+#include "render/draw_scene.hpp"
+#include "render/frame_block.hpp"
+#include "render/gl_objects.hpp"
+
+namespace unravel {
+
+/// Depth maps of a frame: one sharp map from the key light, and a sheet of coarse ones from directions spread
+/// over the sky, whose mean tells each vertex how open it lies (ambient occlusion from the true geometry).
+class ShadowMaps {
+public:
+    /// `draw(transform)` draws everything that casts a shadow, world to clip space.
+    using DrawCasters = std::function<void(const Eigen::Matrix4f& transform)>;
+
+    /// Maps cover the sphere around the scene's bounds.
+    ShadowMaps(const DrawScene& scene, int key_size);
+
+    /// Fills in the parts of the block that belong to shadows; they never change.
+    void describe(FrameBlock& block) const;
+    void draw(const DrawCasters& draw_casters) const;
+    /// Binds the maps to texture units key_compare, key_depth and sky.
+    void bind() const;
+    /// Points a program's samplers at those units.
+    static void connect(const GlProgram& program);
+
+private:
+    static constexpr int tile = 256, columns = 4, rows = 2;
+    static constexpr int unit_compare = 1, unit_depth = 2, unit_sky = 3;
+
+    int key_size_;
+    float radius_;
+    Vec3f key_direction_;
+    Eigen::Matrix4f key_transform_;  ///< world to clip space
+    std::array<Eigen::Matrix4f, FrameBlock::sky_directions> sky_transforms_;
+    std::array<Vec3f, FrameBlock::sky_directions> sky_directions_;
+    GlTexture key_map_, sky_maps_;
+    GlFramebuffer key_target_, sky_target_;
+    GlSampler compare_, depth_;
+};
+
+}  // namespace unravel

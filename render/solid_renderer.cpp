@@ -1,0 +1,104 @@
+#include "render/solid_renderer.hpp"
+
+#include "render/color.hpp"
+#include "render/shadow.hpp"
+#include "render/solid_shapes.hpp"
+
+namespace unravel {
+
+SolidRenderer::SolidRenderer(const DrawScene& scene)
+    : scene_(&scene),
+      centre_(0.5f * (scene.bounds_low + scene.bounds_high)),
+      reach_(2.5f * (scene.bounds_high - scene.bounds_low).norm()),
+      shaded_({"frame.glsl", "sky.glsl", "solid.vert"}, {"frame.glsl", "light.glsl", "solid.frag"}),
+      model_(shaded_.uniform("model")),
+      albedo_(shaded_.uniform("albedo")),
+      gloss_(shaded_.uniform("gloss")),
+      fades_(shaded_.uniform("fades")),
+      fade_centre_(shaded_.uniform("fade_centre")) {
+    ShadowMaps::connect(shaded_);
+    const auto add = [&](const Tessellation& mesh, int solid, bool fades, Rgb color) {
+        Part& part = parts_.emplace_back();
+        part.count = static_cast<GLsizei>(mesh.indices.size());
+        part.solid = solid;
+        part.fades = fades;
+        part.albedo = linear(color);
+        std::vector<Vec3f> vertices;
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+            vertices.push_back(mesh.positions[i]);
+            vertices.push_back(mesh.normals[i]);
+        }
+        glBindVertexArray(part.vertex_array);
+        fill_buffer(GL_ARRAY_BUFFER, part.vertices, vertices);
+        float_attribute(0, 3, 2 * sizeof(Vec3f), 0);
+        float_attribute(1, 3, 2 * sizeof(Vec3f), sizeof(Vec3f));
+        fill_buffer(GL_ELEMENT_ARRAY_BUFFER, part.indices, mesh.indices);
+        glBindVertexArray(0);
+    };
+    if (scene.show_ground) add(tessellate_ground(reach_), -1, true, scene.ground);
+    for (std::size_t i = 0; i < scene.solids.size(); ++i) {
+        const bool plane = scene.solids[i].shape == SolidShape::plane;
+        add(plane ? tessellate_ground(reach_) : tessellate(scene.solids[i]), static_cast<int>(i), plane,
+            scene.solids[i].color);
+    }
+}
+
+Eigen::Matrix4f SolidRenderer::pose(const Part& part, const DrawFrame& frame) const {
+    Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
+    if (part.solid >= 0) {
+        pose = frame.solid_poses[part.solid];
+        if (part.fades) {
+            // An endless plane: its mesh follows to the point below the scene's centre.
+            const Vec3f normal = pose.linear().col(1);
+            pose.translation() = centre_ - normal * normal.dot(centre_ - pose.translation());
+        }
+    } else {
+        pose.translation() = Vec3f(centre_.x(), scene_->ground_height, centre_.z());
+    }
+    return pose.matrix();
+}
+
+void SolidRenderer::draw_part(const Part& part) const {
+    glBindVertexArray(part.vertex_array);
+    glDrawElements(GL_TRIANGLES, part.count, GL_UNSIGNED_INT, nullptr);
+}
+
+void SolidRenderer::draw_shapes(const DrawFrame& frame, GLint transform_uniform,
+                                const Eigen::Matrix4f& transform) const {
+    for (const Part& part : parts_) {
+        if (part.fades) continue;  // nothing lies below a plane
+        const Eigen::Matrix4f matrix = transform * pose(part, frame);
+        glUniformMatrix4fv(transform_uniform, 1, GL_FALSE, matrix.data());
+        draw_part(part);
+    }
+}
+
+void SolidRenderer::draw_shaded(const DrawFrame& frame) const {
+    shaded_.use();
+    for (const Part& part : parts_) {
+        const Eigen::Matrix4f matrix = pose(part, frame);
+        const Vec3f middle = matrix.block<3, 1>(0, 3);
+        glUniformMatrix4fv(model_, 1, GL_FALSE, matrix.data());
+        glUniform3fv(albedo_, 1, part.albedo.data());
+        glUniform1f(gloss_, part.fades ? 0.15f : 1.f);
+        glUniform1i(fades_, part.fades);
+        glUniform3fv(fade_centre_, 1, middle.data());
+        draw_part(part);
+    }
+}
+
+void SolidRenderer::draw_quiet(const DrawFrame& frame, const SurfaceUniforms& uniforms) const {
+    for (const Part& part : parts_) {
+        const Eigen::Matrix4f matrix = pose(part, frame);
+        const Vec3f middle = matrix.block<3, 1>(0, 3);
+        // Greys that stay behind the wires.
+        const float grey = part.fades ? 0.034f : 0.10f;
+        glUniformMatrix4fv(uniforms.model, 1, GL_FALSE, matrix.data());
+        glUniform4f(uniforms.tint, grey, 1.03f * grey, 1.1f * grey, 1);
+        glUniform1i(uniforms.fades, part.fades);
+        glUniform3fv(uniforms.fade_centre, 1, middle.data());
+        draw_part(part);
+    }
+}
+
+}  // namespace unravel

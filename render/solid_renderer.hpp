@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include "render/draw_scene.hpp"
+#include "render/gl_objects.hpp"
+
+namespace unravel {
+
+/// Solids, planes and the ground. Planes and the ground fade into the background with distance from the
+/// scene.
+class SolidRenderer {
+public:
+    explicit SolidRenderer(const DrawScene& scene);
+
+    /// How far planes and ground go from the scene's centre [m].
+    float reach() const { return reach_; }
+
+    /// What casts shadows, by the program in use, whose matrix `transform` is set for each.
+    void draw_shapes(const DrawFrame& frame, GLint transform_uniform, const Eigen::Matrix4f& transform) const;
+    void draw_shaded(const DrawFrame& frame) const;
+    /// The component view's quiet version, by the program in use.
+    struct SurfaceUniforms {
+        GLint model, tint, fades, fade_centre;
+    };
+    void draw_quiet(const DrawFrame& frame, const SurfaceUniforms& uniforms) const;
+
+private:
+    struct Part {
+        GlVertexArray vertex_array;
+        GlBuffer vertices, indices;
+        GLsizei count = 0;
+        int solid = -1;  ///< −1: the ground
+        bool fades = false;
+        Vec3f albedo;  ///< linear
+    };
+    Eigen::Matrix4f pose(const Part& part, const DrawFrame& frame) const;
+    void draw_part(const Part& part) const;
+
+    const DrawScene* scene_;
+    Vec3f centre_;
+    float reach_;
+    std::vector<Part> parts_;
+    GlProgram shaded_;
+    GLint model_, albedo_, gloss_, fades_, fade_centre_;
+};
+
+}  // namespace unravel

@@ -1,0 +1,105 @@
+#include "render/wire_renderer.hpp"
+
+#include <algorithm>
+
+namespace unravel {
+
+void WireRenderer::make_table(const Table& table, GLenum format, std::size_t bytes) {
+    // A table of nothing is not allowed: keep room for one entry.
+    allocate_buffer(GL_TEXTURE_BUFFER, table.buffer, std::max<std::size_t>(bytes, 16));
+    glBindTexture(GL_TEXTURE_BUFFER, table.texture);
+    glTexBuffer(GL_TEXTURE_BUFFER, format, table.buffer);
+}
+
+WireRenderer::WireRenderer(const DrawScene& scene)
+    : wire_({"frame.glsl", "wire.vert"}, {"wire.frag"}),
+      dot_({"frame.glsl", "dot.vert"}, {"dot.frag"}),
+      width_(wire_.uniform("width")),
+      wire_spacing_(wire_.uniform("spacing")),
+      radius_(dot_.uniform("radius")) {
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    std::vector<float> lengths;
+    for (const ClothMesh& mesh : scene.cloths) {
+        edges.insert(edges.end(), mesh.edges.begin(), mesh.edges.end());
+        for (const std::uint32_t p : mesh.particle) particles_ = std::max<std::size_t>(particles_, p + 1);
+        // Sides of the flat triangles tell the springs' length before any frame is seen.
+        for (const auto& [a, b, c] : mesh.triangles) lengths.push_back((mesh.uv[a] - mesh.uv[b]).norm());
+    }
+    edges_ = edges.size();
+    if (!lengths.empty()) {
+        const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+        std::nth_element(lengths.begin(), middle, lengths.end());
+        spacing_ = *middle;
+    }
+    make_table(points_, GL_RGBA32F, 16 * particles_);
+    make_table(colors_, GL_RGBA8, 4 * particles_);
+    make_table(edge_table_, GL_RG32UI, 8 * edges_);
+    make_table(strengths_, GL_R8, edges_);
+    update_buffer(GL_TEXTURE_BUFFER, edge_table_.buffer, edges);
+    solid_.assign(edges_, 255);
+    scratch_points_.resize(particles_);
+    scratch_colors_.resize(particles_);
+
+    // Two triangles for each quad: vertices 4 k … 4 k + 3.
+    std::vector<std::uint32_t> quads;
+    quads.reserve(6 * std::max(edges_, particles_));
+    for (std::size_t k = 0; k < std::max(edges_, particles_); ++k) {
+        const auto v = static_cast<std::uint32_t>(4 * k);
+        quads.insert(quads.end(), {v, v + 1, v + 2, v + 2, v + 1, v + 3});
+    }
+    glBindVertexArray(vertex_array_);
+    fill_buffer(GL_ELEMENT_ARRAY_BUFFER, quads_, quads);
+    glBindVertexArray(0);
+
+    wire_.sampler("points", 0);
+    wire_.sampler("colors", 1);
+    wire_.sampler("edges", 2);
+    wire_.sampler("strengths", 3);
+    dot_.sampler("points", 0);
+    dot_.sampler("colors", 1);
+}
+
+void WireRenderer::update(const DrawFrame& frame) {
+    for (std::size_t i = 0; i < particles_; ++i) {
+        const Vec3f& p = frame.positions[i];
+        const Rgb c = frame.particle_colors[i];
+        scratch_points_[i] = {p.x(), p.y(), p.z(), 1};
+        scratch_colors_[i] = {c.r, c.g, c.b, 255};
+    }
+    update_buffer(GL_TEXTURE_BUFFER, points_.buffer, scratch_points_);
+    update_buffer(GL_TEXTURE_BUFFER, colors_.buffer, scratch_colors_);
+    update_buffer(GL_TEXTURE_BUFFER, strengths_.buffer,
+                  frame.edge_strength.empty() ? solid_ : frame.edge_strength);
+}
+
+void WireRenderer::bind_tables() const {
+    int unit = 0;
+    for (const Table* table : {&points_, &colors_, &edge_table_, &strengths_}) {
+        glActiveTexture(GL_TEXTURE0 + unit++);
+        glBindTexture(GL_TEXTURE_BUFFER, table->texture);
+    }
+}
+
+void WireRenderer::draw(int height, float gap) const {
+    bind_tables();
+    glBindVertexArray(vertex_array_);
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    glDepthMask(GL_FALSE);
+    wire_.use();
+    glUniform1f(width_, line_width(height));
+    glUniform1f(wire_spacing_, spacing_);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * edges_), GL_UNSIGNED_INT, nullptr);
+
+    // Dots only where they leave the lines between them in sight.
+    const float radius = std::min(1.6f * line_width(height), 0.2f * gap);
+    if (radius > 0.8f * line_width(height)) {
+        dot_.use();
+        glUniform1f(radius_, radius);
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * particles_), GL_UNSIGNED_INT, nullptr);
+    }
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+}
+
+}  // namespace unravel

@@ -1,0 +1,12 @@
+// Supersampling: the mean of factor × factor texels. The texture decodes sRGB, so the mean is of light.
+uniform sampler2D picture;
+uniform int factor;
+out vec4 color;
+
+void main() {
+    ivec2 corner = ivec2(gl_FragCoord.xy) * factor;
+    vec4 sum = vec4(0.0);
+    for (int y = 0; y < factor; ++y)
+        for (int x = 0; x < factor; ++x) sum += texelFetch(picture, corner + ivec2(x, y), 0);
+    color = sum / float(factor * factor);
+}

@@ -1,0 +1,13 @@
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+uniform mat4 model;
+out vec3 world;
+out vec3 world_normal;
+out float openness;
+
+void main() {
+    world = (model * vec4(position, 1.0)).xyz;
+    world_normal = mat3(model) * normal;
+    openness = sky_openness(world, world_normal).x;
+    gl_Position = view_projection * vec4(world, 1.0);
+}
