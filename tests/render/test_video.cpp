@@ -234,7 +234,9 @@ TEST_CASE("video_settings_that_can_not_be_are_refused_in_words") {
     CHECK_THAT(refusal("a.avi", nothing), Contains(".mp4, .webm, .mkv or .gif"));
     CHECK_THAT(refusal("a", nothing), Contains(".mp4, .webm, .mkv or .gif"));
     CHECK_THAT(refusal("a.mp4", [](auto& s) { s.preset = "hasty"; }),
-               Contains("libx264") && Contains("hasty"));
+               Contains("libx264 has no preset 'hasty'") && Contains("veryfast"));
+    CHECK_THAT(refusal("a.mp4", [](auto& s) { s.crf = 52; }), Contains("--crf 52 is beyond the 51"));
+    CHECK_THAT(refusal("a.webm", [](auto& s) { s.preset = "99"; }), Contains("cpu-used"));
     CHECK_THAT(refusal("a.mkv", [](auto& s) { s.crf = 3; }), Contains("no quality setting"));
     CHECK(folder.entries() == 0);
 }
