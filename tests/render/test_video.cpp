@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/whole_file.hpp"
+#include "render/av.hpp"
 #include "render/video.hpp"
 #include "render/video_read.hpp"
 #include "tests/base/temporary_folder.hpp"
@@ -112,6 +113,36 @@ TEST_CASE("video_of_any_length_plays") {
             read_video(folder / name, [&](const Image& image, double) { CHECK(read_number(image) == k++); });
             CHECK(k == frames);
         }
+}
+
+TEST_CASE("rgb_becomes_the_yuv_of_bt709_in_limited_range") {
+    // By ITU-R BT.709: Y = 16 + 219 (0.2126 R + 0.7152 G + 0.0722 B), Cb = 128 + 224 (B − Y') / 1.8556,
+    // Cr = 128 + 224 (R − Y') / 1.5748, rounded; 1 for swscale's fixed-point matrix. Asked apart from the
+    // round trip, which would not see the same mistake made on both ways.
+    const struct {
+        std::array<std::uint8_t, 4> rgb;
+        std::array<int, 3> yuv;
+    } cases[] = {{{255, 0, 0, 0}, {63, 102, 240}},
+                 {{0, 255, 0, 0}, {173, 42, 26}},
+                 {{0, 0, 255, 0}, {32, 240, 118}},
+                 {{255, 255, 255, 0}, {235, 128, 128}},
+                 {{0, 0, 0, 0}, {16, 128, 128}}};
+    for (const auto& c : cases) {
+        const Image image = plain_image({c.rgb[0], c.rgb[1], c.rgb[2]});
+        const auto converter = av::make_converter(width, height, AV_PIX_FMT_RGB0, AV_PIX_FMT_YUV420P);
+        std::vector<std::uint8_t> y(width * height), u(y.size() / 4), v(y.size() / 4);
+        const std::uint8_t* rows[] = {image.pixels.data()};
+        const int row_bytes[] = {4 * width}, plane_bytes[] = {width, width / 2, width / 2};
+        std::uint8_t* planes[] = {y.data(), u.data(), v.data()};
+        sws_scale(converter.get(), rows, row_bytes, 0, height, planes, plane_bytes);
+        INFO(int(c.rgb[0]) << " " << int(c.rgb[1]) << " " << int(c.rgb[2]));
+        const std::vector<std::uint8_t>* got[] = {&y, &u, &v};
+        for (int plane = 0; plane < 3; ++plane) {
+            const auto [least, most] = std::minmax_element(got[plane]->begin(), got[plane]->end());
+            CHECK(*least >= c.yuv[plane] - 1);
+            CHECK(*most <= c.yuv[plane] + 1);
+        }
+    }
 }
 
 TEST_CASE("video_keeps_colours") {
