@@ -10,6 +10,7 @@
 #include "render/av.hpp"
 #include "render/video.hpp"
 #include "render/video_read.hpp"
+#include "tests/base/file_size_limit.hpp"
 #include "tests/base/temporary_folder.hpp"
 
 using namespace unravel;
@@ -308,6 +309,19 @@ TEST_CASE("video_errors_of_the_disk_name_the_file") {
     CHECK_THROWS_AS(VideoWriter(folder / "file" / "a.mp4", small_settings()), OutputError);
     CHECK_THROWS_AS(read_video(folder / "none.mp4"), InputError);
     CHECK_THROWS_AS(read_video(folder / "file"), InputError);
+}
+
+TEST_CASE("a_disk_that_fills_up_under_a_video_is_an_error_and_leaves_nothing") {
+    const TemporaryFolder folder;
+    for (const char* name : {"clip.mp4", "clip.webm", "clip.mkv", "clip.gif"}) {
+        INFO(name);
+        // Small enough that it is met while frames are added, or only when the trailer is written.
+        for (int bytes : {64, 4000}) {
+            const FileSizeLimit limit(bytes);
+            CHECK_THROWS_AS(write_numbered(folder / name, small_settings(), 100), OutputError);
+        }
+    }
+    CHECK(folder.entries() == 0);
 }
 
 TEST_CASE("a_frame_of_another_size_is_refused") {
