@@ -58,7 +58,7 @@ std::string LogCapture::explain(int error) const {
     return text_.empty() ? error_text(error) : fmt::format("{} ({})", error_text(error), text_);
 }
 
-Scaler make_converter(int width, int height, AVPixelFormat from, AVPixelFormat to) {
+Scaler make_converter(int width, int height, AVPixelFormat from, AVPixelFormat to, AVColorSpace yuv) {
     auto scaler = made<Scaler>(sws_alloc_context());
     const auto set = [&](const char* name, int value) { av_opt_set_int(scaler.get(), name, value, 0); };
     set("srcw", width);
@@ -73,9 +73,9 @@ Scaler make_converter(int width, int height, AVPixelFormat from, AVPixelFormat t
     const char* side = is_rgb(from) ? "dst" : "src";
     set(fmt::format("{}_h_chr_pos", side).c_str(), 0);
     set(fmt::format("{}_v_chr_pos", side).c_str(), 128);
-    const int* bt709 = sws_getCoefficients(SWS_CS_ITU709);
+    const int* matrix = sws_getCoefficients(yuv);
     // Without this call swscale converts with BT.601's coefficients, whatever the tags say.
-    sws_setColorspaceDetails(scaler.get(), bt709, is_rgb(from), bt709, is_rgb(to), 0, 1 << 16, 1 << 16);
+    sws_setColorspaceDetails(scaler.get(), matrix, is_rgb(from), matrix, is_rgb(to), 0, 1 << 16, 1 << 16);
     if (sws_init_context(scaler.get(), nullptr, nullptr) < 0)
         throw std::runtime_error("the pixel converter (libswscale) does not start");
     return scaler;

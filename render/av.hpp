@@ -65,7 +65,8 @@ private:
 };
 
 /// A converter between two formats of one size, with every rounding and filter choice made for accuracy and
-/// repeatability. YUV is BT.709 limited range with chroma sited left, RGB is full range.
-Scaler make_converter(int width, int height, AVPixelFormat from, AVPixelFormat to);
+/// repeatability. YUV is limited range with chroma sited left, RGB is full range.
+Scaler make_converter(int width, int height, AVPixelFormat from, AVPixelFormat to,
+                      AVColorSpace yuv = AVCOL_SPC_BT709);
 
 }  // namespace unravel::av

@@ -18,7 +18,7 @@ struct VideoSettings {
     int fps_num = 30, fps_den = 1;   ///< frames per second as a fraction
     std::string codec;               ///< an encoder's name; empty: the first of the container's that opens
     int crf = -1;           ///< constant quality, smaller is better; −1: the encoder's entry in our table
-    std::string preset;     ///< effort; empty: the encoder's entry in our table
+    std::string preset;     ///< effort, by the encoder's name for it; empty: a fast one
     int threads = 4;        ///< x264's bytes depend on it, so it never follows the machine
     bool faststart = true;  ///< mp4: index before the frames, so that it plays while it loads
 };

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <optional>
 
 namespace unravel::av {
 namespace {
@@ -15,24 +17,31 @@ constexpr std::array containers{
     Container{".gif", "gif"},
 };
 
-// A lossless encoder has no quality to set. The bit rates are for encoders that know no constant quality; at
-// 20 Mbit/s a 1080p clip of cloth shows no blocks.
+constexpr const char* x264_presets =
+    "ultrafast superfast veryfast faster fast medium slow slower veryslow placebo";
+
+// Quality 18 of x264 can't be told from the frames by eye; the others are set to look like it. VP9's "good"
+// effort costs five times its "realtime" one and more than the frames themselves. The bit rates are for
+// encoders that know no constant quality.
 constexpr std::array encoders{
-    EncoderEntry{".mp4", "libx264", AV_PIX_FMT_YUV420P, "", "crf", 18, "preset", "veryfast"},
-    EncoderEntry{".mp4", "libopenh264", AV_PIX_FMT_YUV420P, "b=20M", nullptr, 0, nullptr, nullptr},
-    EncoderEntry{".mp4", "h264_nvenc", AV_PIX_FMT_YUV420P, "rc=vbr:b=0", "cq", 20, "preset", "p4"},
-    EncoderEntry{".mp4", "h264_qsv", AV_PIX_FMT_NV12, "", "global_quality", 20, "preset", "medium"},
-    EncoderEntry{".mp4", "h264_v4l2m2m", AV_PIX_FMT_YUV420P, "b=20M", nullptr, 0, nullptr, nullptr},
-    EncoderEntry{".mp4", "mpeg4", AV_PIX_FMT_YUV420P, "flags=+qscale", "global_quality", 2, nullptr, nullptr},
-    EncoderEntry{".webm", "libvpx-vp9", AV_PIX_FMT_YUV420P, "b=0:row-mt=1:deadline=good", "crf", 24,
+    EncoderEntry{".mp4", "libx264", AV_PIX_FMT_YUV420P, "", "crf", 18, 51, "preset", "veryfast",
+                 x264_presets},
+    EncoderEntry{".mp4", "libopenh264", AV_PIX_FMT_YUV420P, "b=20M"},
+    EncoderEntry{".mp4", "h264_nvenc", AV_PIX_FMT_YUV420P, "rc=vbr:b=0", "cq", 20, 51, "preset", "p4"},
+    EncoderEntry{".mp4", "h264_qsv", AV_PIX_FMT_NV12, "flags=+qscale", "global_quality", 20, 51, "preset",
+                 "medium"},
+    EncoderEntry{".mp4", "h264_v4l2m2m", AV_PIX_FMT_YUV420P, "b=20M"},
+    EncoderEntry{".mp4", "mpeg4", AV_PIX_FMT_YUV420P, "flags=+qscale", "global_quality", 2, 31},
+    EncoderEntry{".webm", "libvpx-vp9", AV_PIX_FMT_YUV420P, "b=0:row-mt=1:deadline=realtime", "crf", 24, 63,
                  "cpu-used", "5"},
-    EncoderEntry{".webm", "libvpx", AV_PIX_FMT_YUV420P, "b=40M:deadline=good", "crf", 8, "cpu-used", "5"},
-    EncoderEntry{".webm", "libaom-av1", AV_PIX_FMT_YUV420P, "b=0:row-mt=1:usage=realtime", "crf", 24,
+    EncoderEntry{".webm", "libvpx", AV_PIX_FMT_YUV420P, "b=40M:deadline=realtime", "crf", 8, 63, "cpu-used",
+                 "5"},
+    EncoderEntry{".webm", "libaom-av1", AV_PIX_FMT_YUV420P, "b=0:row-mt=1:usage=realtime", "crf", 24, 63,
                  "cpu-used", "8"},
-    EncoderEntry{".mkv", "ffv1", AV_PIX_FMT_0RGB32, "level=3:slicecrc=1:slices=4", nullptr, 0, nullptr,
-                 nullptr},
-    EncoderEntry{".mkv", "libx264rgb", AV_PIX_FMT_BGR0, "qp=0", nullptr, 0, "preset", "ultrafast"},
-    EncoderEntry{".gif", "gif", AV_PIX_FMT_PAL8, "", nullptr, 0, nullptr, nullptr},
+    EncoderEntry{".mkv", "ffv1", AV_PIX_FMT_0RGB32, "level=3:slicecrc=1:slices=4"},
+    EncoderEntry{".mkv", "libx264rgb", AV_PIX_FMT_BGR0, "qp=0", nullptr, 0, 0, "preset", "ultrafast",
+                 x264_presets},
+    EncoderEntry{".gif", "gif", AV_PIX_FMT_PAL8, ""},
 };
 
 struct Options {
@@ -53,6 +62,18 @@ void set_colours(AVCodecContext& context) {
     if (yuv) context.chroma_sample_location = AVCHROMA_LOC_LEFT;
 }
 
+bool has_word(std::string_view words, std::string_view word) {
+    return fmt::format(" {} ", words).find(fmt::format(" {} ", word)) != std::string::npos;
+}
+
+std::string describe(const EncoderEntry& entry, const std::string& quality, int threads) {
+    const std::string_view ending = entry.ending;
+    const char* colours = ending == ".mkv"   ? "lossless RGB"
+                          : ending == ".gif" ? "256 colours a frame"
+                                             : "yuv420p, BT.709";
+    return fmt::format("{} ({}{}, {} threads)", entry.codec, colours, quality, threads);
+}
+
 // Quality and effort as the user or else our table has them, and how they are told to the user.
 std::string set_quality(const EncoderEntry& entry, const VideoSettings& settings, AVCodecContext& context,
                         Options& options) {
@@ -61,6 +82,12 @@ std::string set_quality(const EncoderEntry& entry, const VideoSettings& settings
         throw VideoError(fmt::format("the encoder {} has no quality setting: leave out --crf", entry.codec));
     if (!settings.preset.empty() && !entry.effort_option)
         throw VideoError(fmt::format("the encoder {} has no presets: leave out --preset", entry.codec));
+    if (settings.crf > entry.worst_quality)
+        throw VideoError(fmt::format("--crf {} is beyond the {} that {} knows", settings.crf,
+                                     entry.worst_quality, entry.codec));
+    if (entry.efforts && !settings.preset.empty() && !has_word(entry.efforts, settings.preset))
+        throw VideoError(
+            fmt::format("{} has no preset '{}'; it has: {}", entry.codec, settings.preset, entry.efforts));
     if (entry.quality_option) {
         const int quality = settings.crf >= 0 ? settings.crf : entry.quality;
         // FFmpeg counts this one option in steps of 1/118 of a quantiser.
@@ -120,47 +147,47 @@ OpenEncoder open_encoder(const EncoderEntry& entry, const VideoSettings& setting
         throw VideoError(log.explain(error));
     if (const auto* unknown = av_dict_get(options.entries, "", nullptr, AV_DICT_IGNORE_SUFFIX))
         throw VideoError(fmt::format("it does not know the setting {}", unknown->key));
-    const bool yuv = context->colorspace == AVCOL_SPC_BT709;
-    std::string description = fmt::format("{} ({}{}, {} threads)", entry.codec,
-                                          yuv ? "yuv420p, BT.709" : "RGB", quality, settings.threads);
-    return {std::move(context), std::move(description)};
+    return {std::move(context), describe(entry, quality, settings.threads)};
 }
 
-OpenEncoder choose_encoder(const Container& container, const VideoSettings& settings) {
-    const auto entries = encoders_for(container);
-    std::string failures;
-    const auto note = [&failures](const char* codec, const VideoError& error) {
-        failures += fmt::format("{}{}: {}", failures.empty() ? "" : "; ", codec, error.what());
-    };
-    if (settings.codec.empty()) {
-        for (const EncoderEntry* entry : entries) try {
-                OpenEncoder opened = open_encoder(*entry, settings);
-                if (!failures.empty()) opened.description += fmt::format(", since {}", failures);
-                return opened;
-            } catch (const VideoError& error) {
-                note(entry->codec, error);
-            }
-        throw VideoError(fmt::format("no encoder for {} opens: {}", container.ending, failures));
+namespace {
+
+// Empty, with the reason added to `failures`, where the encoder does not open.
+std::optional<OpenEncoder> try_encoder(const EncoderEntry& entry, const VideoSettings& settings,
+                                       std::string& failures) {
+    try {
+        return open_encoder(entry, settings);
+    } catch (const VideoError& error) {
+        failures += fmt::format("{}{}: {}", failures.empty() ? "" : "; ", entry.codec, error.what());
+        return {};
     }
-    for (const EncoderEntry* entry : entries)
-        if (settings.codec == entry->codec) try {
-                return open_encoder(*entry, settings);
-            } catch (const VideoError& error) {
-                note(entry->codec, error);
-            }
-    if (failures.empty()) failures = fmt::format("{}: it is not one of the encoders for it", settings.codec);
-    std::string opening;
-    VideoSettings plain = settings;
-    plain.crf = -1;
-    plain.preset.clear();
-    for (const EncoderEntry* entry : entries) try {
-            open_encoder(*entry, plain);
-            opening += fmt::format("{}{}", opening.empty() ? "" : ", ", entry->codec);
-        } catch (const VideoError&) {
-            continue;
+}
+
+std::string encoders_that_open(const Container& container, VideoSettings settings) {
+    settings.crf = -1;
+    settings.preset.clear();
+    std::string names, failures;
+    for (const EncoderEntry* entry : encoders_for(container))
+        if (try_encoder(*entry, settings, failures))
+            names += fmt::format("{}{}", names.empty() ? "" : ", ", entry->codec);
+    return names.empty() ? "none" : names;
+}
+
+}  // namespace
+
+OpenEncoder choose_encoder(const Container& container, const VideoSettings& settings) {
+    std::string failures;
+    for (const EncoderEntry* entry : encoders_for(container)) {
+        if (!settings.codec.empty() && settings.codec != entry->codec) continue;
+        if (std::optional<OpenEncoder> opened = try_encoder(*entry, settings, failures)) {
+            if (!failures.empty()) opened->description += fmt::format(", since {}", failures);
+            return std::move(*opened);
         }
+    }
+    if (failures.empty())
+        failures = fmt::format("{}: it is not one of the encoders for that", settings.codec);
     throw VideoError(fmt::format("can't make {} with {}; encoders that open here: {}", container.ending,
-                                 failures, opening.empty() ? "none" : opening));
+                                 failures, encoders_that_open(container, settings)));
 }
 
 }  // namespace unravel::av

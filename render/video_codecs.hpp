@@ -22,10 +22,12 @@ struct EncoderEntry {
     const char* codec;
     AVPixelFormat pixels;
     const char* options;
-    const char* quality_option;  ///< what --crf sets; null: it has no such setting
-    int quality;                 ///< its default
-    const char* effort_option;   ///< what --preset sets; null: none
-    const char* effort;          ///< its default
+    const char* quality_option = nullptr;  ///< what --crf sets; null: it has no such setting
+    int quality = 0;                       ///< its default
+    int worst_quality = 0;                 ///< the end of its scale
+    const char* effort_option = nullptr;   ///< what --preset sets; null: none
+    const char* effort = nullptr;          ///< its default
+    const char* efforts = nullptr;         ///< all there are; null: FFmpeg itself checks
 };
 
 /// An encoder that opened.

@@ -66,8 +66,9 @@ public:
             if (result < 0) return result;
             const int width = frame_->width, height = frame_->height;
             if (!scaler_) {
+                // As a player does: by the file's own tag.
                 scaler_ = av::make_converter(width, height, static_cast<AVPixelFormat>(frame_->format),
-                                             AV_PIX_FMT_RGBA);
+                                             AV_PIX_FMT_RGBA, frame_->colorspace);
                 image_ = {width, height, {}};
                 image_.pixels.resize(static_cast<std::size_t>(width) * height * 4);
             }

@@ -1,4 +1,3 @@
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,6 +8,7 @@
 #include <string>
 
 #include "base/whole_file.hpp"
+#include "tests/base/file_size_limit.hpp"
 #include "tests/base/temporary_folder.hpp"
 
 using namespace unravel;
@@ -20,25 +20,6 @@ std::string content(const fs::path& file) {
     const auto bytes = read_whole_file(file, 1 << 20);
     return {bytes.begin(), bytes.end()};
 }
-
-// Files of this process may not grow beyond `bytes` while this lives: as near to a full disk as a test comes
-// without a disk of its own.
-class FileSizeLimit {
-public:
-    explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-        getrlimit(RLIMIT_FSIZE, &before_);
-        const rlimit now{bytes, before_.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &now);
-    }
-    ~FileSizeLimit() {
-        setrlimit(RLIMIT_FSIZE, &before_);
-        std::signal(SIGXFSZ, handler_);
-    }
-
-private:
-    void (*handler_)(int);
-    rlimit before_{};
-};
 
 }  // namespace
 

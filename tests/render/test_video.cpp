@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "base/whole_file.hpp"
+#include "render/av.hpp"
 #include "render/video.hpp"
 #include "render/video_read.hpp"
+#include "tests/base/file_size_limit.hpp"
 #include "tests/base/temporary_folder.hpp"
 
 using namespace unravel;
@@ -112,6 +114,36 @@ TEST_CASE("video_of_any_length_plays") {
             read_video(folder / name, [&](const Image& image, double) { CHECK(read_number(image) == k++); });
             CHECK(k == frames);
         }
+}
+
+TEST_CASE("rgb_becomes_the_yuv_of_bt709_in_limited_range") {
+    // By ITU-R BT.709: Y = 16 + 219 (0.2126 R + 0.7152 G + 0.0722 B), Cb = 128 + 224 (B − Y') / 1.8556,
+    // Cr = 128 + 224 (R − Y') / 1.5748, rounded; 1 for swscale's fixed-point matrix. Asked apart from the
+    // round trip, which would not see the same mistake made on both ways.
+    const struct {
+        std::array<std::uint8_t, 4> rgb;
+        std::array<int, 3> yuv;
+    } cases[] = {{{255, 0, 0, 0}, {63, 102, 240}},
+                 {{0, 255, 0, 0}, {173, 42, 26}},
+                 {{0, 0, 255, 0}, {32, 240, 118}},
+                 {{255, 255, 255, 0}, {235, 128, 128}},
+                 {{0, 0, 0, 0}, {16, 128, 128}}};
+    for (const auto& c : cases) {
+        const Image image = plain_image({c.rgb[0], c.rgb[1], c.rgb[2]});
+        const auto converter = av::make_converter(width, height, AV_PIX_FMT_RGB0, AV_PIX_FMT_YUV420P);
+        std::vector<std::uint8_t> y(width * height), u(y.size() / 4), v(y.size() / 4);
+        const std::uint8_t* rows[] = {image.pixels.data()};
+        const int row_bytes[] = {4 * width}, plane_bytes[] = {width, width / 2, width / 2};
+        std::uint8_t* planes[] = {y.data(), u.data(), v.data()};
+        sws_scale(converter.get(), rows, row_bytes, 0, height, planes, plane_bytes);
+        INFO(int(c.rgb[0]) << " " << int(c.rgb[1]) << " " << int(c.rgb[2]));
+        const std::vector<std::uint8_t>* got[] = {&y, &u, &v};
+        for (int plane = 0; plane < 3; ++plane) {
+            const auto [least, most] = std::minmax_element(got[plane]->begin(), got[plane]->end());
+            CHECK(*least >= c.yuv[plane] - 1);
+            CHECK(*most <= c.yuv[plane] + 1);
+        }
+    }
 }
 
 TEST_CASE("video_keeps_colours") {
@@ -234,7 +266,9 @@ TEST_CASE("video_settings_that_can_not_be_are_refused_in_words") {
     CHECK_THAT(refusal("a.avi", nothing), Contains(".mp4, .webm, .mkv or .gif"));
     CHECK_THAT(refusal("a", nothing), Contains(".mp4, .webm, .mkv or .gif"));
     CHECK_THAT(refusal("a.mp4", [](auto& s) { s.preset = "hasty"; }),
-               Contains("libx264") && Contains("hasty"));
+               Contains("libx264 has no preset 'hasty'") && Contains("veryfast"));
+    CHECK_THAT(refusal("a.mp4", [](auto& s) { s.crf = 52; }), Contains("--crf 52 is beyond the 51"));
+    CHECK_THAT(refusal("a.webm", [](auto& s) { s.preset = "99"; }), Contains("cpu-used"));
     CHECK_THAT(refusal("a.mkv", [](auto& s) { s.crf = 3; }), Contains("no quality setting"));
     CHECK(folder.entries() == 0);
 }
@@ -275,6 +309,19 @@ TEST_CASE("video_errors_of_the_disk_name_the_file") {
     CHECK_THROWS_AS(VideoWriter(folder / "file" / "a.mp4", small_settings()), OutputError);
     CHECK_THROWS_AS(read_video(folder / "none.mp4"), InputError);
     CHECK_THROWS_AS(read_video(folder / "file"), InputError);
+}
+
+TEST_CASE("a_disk_that_fills_up_under_a_video_is_an_error_and_leaves_nothing") {
+    const TemporaryFolder folder;
+    for (const char* name : {"clip.mp4", "clip.webm", "clip.mkv", "clip.gif"}) {
+        INFO(name);
+        // Small enough that it is met while frames are added, or only when the trailer is written.
+        for (int bytes : {64, 4000}) {
+            const FileSizeLimit limit(bytes);
+            CHECK_THROWS_AS(write_numbered(folder / name, small_settings(), 100), OutputError);
+        }
+    }
+    CHECK(folder.entries() == 0);
 }
 
 TEST_CASE("a_frame_of_another_size_is_refused") {
