@@ -1,3 +1,134 @@
-int main() {
-    return 0;
+// Arguments → options → command; every failure becomes one message and one exit code here.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <functional>
+
+#include "base/file_errors.hpp"
+#include "render/gl_context.hpp"
+#include "render/video.hpp"
+#include "sim/scene/load.hpp"
+#include "sim/step.hpp"
+#include "tool/options.hpp"
+#include "tool/render_options.hpp"
+#include "tool/version.hpp"
+
+namespace {
+
+using namespace unravel;
+
+void add_run_options(CLI::App& command, Options& o) {
+    command.add_option("-o", o.output, "folder of the run (default: output/<scene name>)");
+    command.add_option("--set", o.overrides, "key=value: another value for a key of the scene; repeatable")
+        ->allow_extra_args(false);
+    command.add_option("--threads", o.threads, "threads of the simulation (default: one per processor)")
+        ->check(CLI::Range(1, 1024));
+    command.add_flag("--resume", o.resume, "go on from the last frame in the folder");
+    command.add_flag("--force", o.force, "start anew in a folder that holds a run");
+    command.add_flag("--compare-whole", o.compare_whole,
+                     "solve each system undecomposed too, and count rvm_whole");
+}
+
+void add_picture_options(CLI::App& command, Options& o) {
+    command.add_option("--frames", o.frames, "A-B: only these frames");
+    command.add_option("--style", o.style, "textured, components or both")->capture_default_str();
+    command.add_option("--size", o.size, "WxH, both even (default: the scene's)");
+    command.add_option("--device", o.device, "auto, gpu, software or the number of an EGL device")
+        ->capture_default_str();
+    command.add_option("--samples", o.samples, "per pixel, clamped to what the renderer offers")
+        ->capture_default_str();
+    command.add_option("--supersample", o.supersample, "draw this many times larger and average")
+        ->check(CLI::Range(1, 4));
+    command.add_option("--video", o.video, "mp4, webm, mkv (lossless), gif or none")->capture_default_str();
+    command.add_option("--codec", o.codec, "this encoder and no other");
+    command.add_option("--crf", o.crf, "quality of the video, smaller is better")->check(CLI::Range(0, 63));
+    command.add_option("--preset", o.preset, "the encoder's effort");
+    command.add_flag("--pictures,!--no-pictures", o.pictures, "write PNG frames (default: yes)");
+}
+
+void add_output_options(CLI::App& command, Options& o) {
+    command.add_flag("--quiet", o.quiet, "print errors only");
+    command.add_flag("--json", o.json, "print the result as JSON");
+}
+
+int guarded(const std::function<int()>& command) {
+    const auto failed = [](const std::exception& error, int code) {
+        fmt::print(stderr, "unravel: {}\n", error.what());
+        return code;
+    };
+    try {
+        return command();
+    } catch (const SceneError& error) {
+        // Its text is a list of located problems, to be read by editors as it is.
+        fmt::print(stderr, "{}\n", error.what());
+        return exit_scene;
+    } catch (const UsageError& error) {
+        return failed(error, exit_usage);
+    } catch (const FolderError& error) {
+        return failed(error, exit_usage);
+    } catch (const RendererError& error) {
+        return failed(error, exit_no_renderer);
+    } catch (const VideoError& error) {
+        return failed(error, exit_no_renderer);
+    } catch (const SimulationError& error) {
+        return failed(error, exit_simulation);
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "unravel: memory ran out; `unravel check` tells what a scene needs\n");
+        return exit_output;
+    } catch (const std::exception& error) {
+        return failed(error, exit_output);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    CLI::App app("Unravel: cloth simulated with a decomposing solver, rendered off-screen.", "unravel");
+    app.set_version_flag("--version", version());
+    app.require_subcommand(1);
+
+    std::function<int()> chosen;
+    const auto command = [&](const char* name, const char* what, int (*run)(const Options&)) {
+        CLI::App* sub = app.add_subcommand(name, what);
+        add_output_options(*sub, options);
+        sub->callback([&, run] { chosen = [&, run] { return run(options); }; });
+        return sub;
+    };
+    const auto takes = [&](CLI::App* sub, const char* what, const char* meaning) {
+        sub->add_option(what, options.scene, meaning)->required();
+        return sub;
+    };
+
+    CLI::App* run =
+        takes(command("run", "simulate, render both views, encode", command_run), "SCENE", "scene file");
+    add_run_options(*run, options);
+    add_picture_options(*run, options);
+    CLI::App* simulate =
+        takes(command("simulate", "simulate only, into a cache", command_simulate), "SCENE", "scene file");
+    add_run_options(*simulate, options);
+    CLI::App* render = takes(command("render", "pictures and videos from a cached run", command_render),
+                             "RUN_DIR", "folder of the run");
+    render->add_option("-o", options.output, "folder for the pictures (default: the run's own)");
+    render->add_option("--set", options.overrides, "key=value of [camera], [look] or clip.size")
+        ->allow_extra_args(false);
+    add_picture_options(*render, options);
+    CLI::App* check = takes(command("check", "what is wrong with a scene, or what would run", command_check),
+                            "SCENE", "scene file");
+    check
+        ->add_option("--set", options.overrides,
+                     "key=value: another value for a key of the scene; repeatable")
+        ->allow_extra_args(false);
+    command("doctor", "which renderers and encoders this machine has, and how to get what is missing",
+            command_doctor);
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        const int code = app.exit(error);
+        return code == 0 ? exit_done : exit_usage;
+    }
+    return guarded(chosen);
 }

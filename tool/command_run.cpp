@@ -1,0 +1,116 @@
+// unravel run SCENE and unravel simulate SCENE: the main job, with and without pictures.
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "base/whole_file.hpp"
+#include "sim/scene/load.hpp"
+#include "tool/clip.hpp"
+#include "tool/interrupt.hpp"
+#include "tool/options.hpp"
+#include "tool/progress.hpp"
+#include "tool/render_options.hpp"
+#include "tool/run_json.hpp"
+#include "tool/run_source.hpp"
+
+namespace unravel {
+
+namespace {
+
+// Threads beyond the simulation's own: drawing, writing and encoding wait on other things for much of their
+// time.
+constexpr int pipeline_threads = 3;
+
+int thread_count(const Options& options) {
+    return options.threads > 0 ? options.threads
+                               : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+void print_summary(const Options& options, const RunFolder& folder, const nlohmann::ordered_json& json) {
+    if (options.json) {
+        fmt::print("{}\n", json.dump(2));
+        return;
+    }
+    if (options.quiet) return;
+    const auto& totals = json["totals"];
+    fmt::print("{}: {} frames, {} steps, {} particles", json["status"].get<std::string>(),
+               json["frames"].get<int>(), json["steps"].get<int>(), json["particles"].get<int>());
+    if (totals.contains("rvm_saved"))
+        fmt::print(", {:.1f}% fewer RVMs than whole", 100 * totals["rvm_saved"].get<double>());
+    fmt::print("\n");
+    if (json.contains("videos")) {
+        for (const auto& video : json["videos"])
+            fmt::print("  {}\n", (folder.root / video.get<std::string>()).string());
+    }
+    fmt::print("  {}\n", folder.stats().string());
+}
+
+int simulate_clip(const Options& options, bool pictures) {
+    const auto begin = std::chrono::steady_clock::now();
+    Scene scene = load_scene(options.scene, options.overrides);
+    const RunFolder folder{options.output.empty() ? std::filesystem::path("output") / scene.name
+                                                  : options.output};
+    ClipOptions clip_options = clip_options_of(options, scene);
+    if (pictures) check_clip(scene, folder, clip_options);
+
+    const Existing existing = options.force    ? Existing::replace
+                              : options.resume ? Existing::resume
+                                               : Existing::refuse;
+    const std::uint64_t hash = open_run(folder, scene, existing);
+
+    const int threads = thread_count(options);
+    const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,
+                                          static_cast<std::size_t>(threads + pipeline_threads));
+    Simulation simulation = start_simulation(scene);
+    simulation.options.compare_whole = options.compare_whole;
+    const int cached =
+        cached_frames(folder, scene, hash, simulation.model.size(), simulation.model.springs.size());
+    clip_options.reuse_pictures = existing == Existing::resume;
+    RunSource source(scene, folder, hash, simulation, cached, threads);
+
+    Progress progress(scene.name, scene.clip.frames(), options.quiet);
+    const auto done = [&](int frame) { progress.show(frame + 1, std::min(cached, frame + 1)); };
+    const InterruptWatch watch;
+    std::optional<ClipReport> report;
+    const auto conclude = [&](const char* status) {
+        progress.finish();
+        source.write_stats();
+        nlohmann::ordered_json json =
+            run_json(scene, simulation, source, threads, status, report ? &*report : nullptr);
+        json["wall_seconds"] =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        write_whole_file(folder.run_json(), json.dump(2) + "\n");
+        print_summary(options, folder, json);
+    };
+    try {
+        if (pictures) {
+            Placement placement;
+            build_model(scene, placement);
+            report = make_clip(
+                scene, simulation.model, placement, folder, clip_options, [&] { return source.next(); },
+                done);
+        } else {
+            while (const std::optional<FrameRecord> record = source.next()) done(record->frame);
+        }
+    } catch (const SimulationError&) {
+        conclude("failed");
+        throw;
+    }
+    conclude(InterruptWatch::requested() ? "interrupted" : "complete");
+    return InterruptWatch::requested() ? exit_interrupted : exit_done;
+}
+
+}  // namespace
+
+int command_run(const Options& options) {
+    return simulate_clip(options, true);
+}
+int command_simulate(const Options& options) {
+    return simulate_clip(options, false);
+}
+
+}  // namespace unravel

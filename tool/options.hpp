@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace unravel {
+
+/// Exit codes, each of its own kind.
+enum Exit : int {
+    exit_done = 0,
+    exit_usage = 2,
+    exit_scene = 3,
+    exit_no_renderer = 4,
+    exit_simulation = 5,
+    exit_output = 6,
+    exit_interrupted = 130,
+};
+
+/// What the command line says; commands read the parts that concern them.
+struct Options {
+    std::filesystem::path scene;         ///< SCENE or RUN_DIR
+    std::filesystem::path output;        ///< -o; empty: output/<scene name>
+    std::vector<std::string> overrides;  ///< --set
+    std::string frames;                  ///< --frames A-B
+    int threads = 0;                     ///< 0: one per processor
+    bool resume = false, force = false, quiet = false, json = false;
+    bool compare_whole = false;
+    std::string device = "auto";
+    std::string style = "both";  ///< textured, components, both
+    std::string size;            ///< --size WxH
+    std::string video = "mp4";   ///< mp4, webm, mkv, gif, none
+    std::string codec, preset;
+    int crf = -1;
+    int samples = 4, supersample = 1;
+    bool pictures = true;
+};
+
+// The commands. Each returns an exit code and throws what main() turns into one.
+int command_run(const Options& options);
+int command_simulate(const Options& options);
+int command_render(const Options& options);
+int command_check(const Options& options);
+int command_doctor(const Options& options);
+
+}  // namespace unravel

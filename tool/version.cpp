@@ -1,0 +1,9 @@
+#include "tool/version.hpp"
+
+namespace unravel {
+
+const char* version() {
+    return UNRAVEL_VERSION;
+}
+
+}  // namespace unravel
