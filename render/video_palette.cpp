@@ -1,6 +1,7 @@
 #include "render/video_palette.hpp"
 
 #include <libimagequant.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cstring>
@@ -30,6 +31,9 @@ void require(bool fine) {
 }  // namespace
 
 void fill_palette_frame(const Image& image, AVFrame& frame) {
+    // Its sums, and so its palettes, depend on how many threads share them. The setting is this thread's
+    // alone.
+    omp_set_num_threads(1);
     const std::unique_ptr<liq_attr, Release> attributes(liq_attr_create());
     require(attributes != nullptr);
     liq_set_speed(attributes.get(), 7);  // of 1 to 10: beyond 5 the palette hardly changes, the time halves

@@ -122,7 +122,6 @@ void VideoWriter::Parts::encode(const AVFrame* next) {
         av_packet_rescale_ts(packet.get(), encoder.context->time_base, stream->time_base);
         packet->stream_index = stream->index;
         require(av_interleaved_write_frame(muxer.get(), packet.get()), whole.target(), log);
-        require(io->error, whole.target(), log);
     }
 }
 
@@ -131,7 +130,6 @@ void VideoWriter::Parts::finish() {
     encode(nullptr);
     const av::LogCapture log;
     require(av_write_trailer(muxer.get()), whole.target(), log);
-    require(io->error, whole.target(), log);
     require(avio_close(io.release()), whole.target(), log);
     whole.commit();
 }

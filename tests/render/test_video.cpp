@@ -1,8 +1,11 @@
+#include <omp.h>
+
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -224,6 +227,24 @@ TEST_CASE("video_has_the_same_bytes_each_time") {
         write_numbered(folder / name, small_settings(), 30);
         CHECK(first == read_whole_file(folder / name, 1 << 24));
     }
+}
+
+TEST_CASE("gif_has_the_same_bytes_for_any_number_of_cores") {
+    const TemporaryFolder folder;
+    // Noise: the quantiser shares its work out only from some thousand colours on.
+    std::mt19937 random(11);
+    Image image = plain_image({0, 0, 0});
+    for (std::uint8_t& value : image.pixels) value = static_cast<std::uint8_t>(random());
+    std::vector<std::uint8_t> bytes[3];
+    for (int threads : {1, 2, 3}) {
+        omp_set_num_threads(threads);
+        VideoWriter writer(folder / "clip.gif", small_settings());
+        for (int k = 0; k < 3; ++k) writer.add(image);
+        writer.finish();
+        bytes[threads - 1] = read_whole_file(folder / "clip.gif", 1 << 24);
+    }
+    CHECK(bytes[0] == bytes[1]);
+    CHECK(bytes[0] == bytes[2]);
 }
 
 TEST_CASE("video_not_finished_leaves_nothing") {
