@@ -1,6 +1,7 @@
 #include "render/cloth_renderer.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "render/color.hpp"
 #include "render/normals.hpp"
@@ -19,6 +20,27 @@ void upload_texture(GLuint texture, const Image& image) {
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
         glTexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAX_ANISOTROPY_EXT, 8);
+}
+
+/// Triangles between a few of the mesh's vertices: each cell of a grid over the flat cloth is stood for by
+/// its first vertex.
+std::vector<std::uint32_t> coarsen(const ClothMesh& mesh) {
+    constexpr float cells = 40;  // along the longer side
+    Vec2f extent(1e-6f, 1e-6f);
+    for (const Vec2f& uv : mesh.uv) extent = extent.cwiseMax(uv);
+    const float cell = extent.maxCoeff() / cells;
+    std::map<std::pair<int, int>, std::uint32_t> first;
+    std::vector<std::uint32_t> standing(mesh.uv.size());
+    for (std::uint32_t i = 0; i < mesh.uv.size(); ++i) {
+        const std::pair key{static_cast<int>(mesh.uv[i].x() / cell), static_cast<int>(mesh.uv[i].y() / cell)};
+        standing[i] = first.emplace(key, i).first->second;
+    }
+    std::vector<std::uint32_t> triangles;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const std::uint32_t i = standing[a], j = standing[b], k = standing[c];
+        if (i != j && j != k && k != i) triangles.insert(triangles.end(), {i, j, k});
+    }
+    return triangles;
 }
 
 Vec3f mix(const Vec3f& a, const Vec3f& b, float t) {
@@ -54,6 +76,12 @@ ClothRenderer::ClothRenderer(const DrawScene& scene)
         glEnableVertexAttribArray(3);
         glVertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, 4, nullptr);
         fill_buffer(GL_ELEMENT_ARRAY_BUFFER, cloth.indices, mesh.triangles);
+        const std::vector<std::uint32_t> coarse = coarsen(mesh);
+        cloth.coarse_count = static_cast<GLsizei>(coarse.size());
+        glBindVertexArray(cloth.coarse_array);
+        glBindBuffer(GL_ARRAY_BUFFER, cloth.vertices);
+        float_attribute(0, 3, sizeof(Vertex), 0);
+        fill_buffer(GL_ELEMENT_ARRAY_BUFFER, cloth.coarse_indices, coarse);
         glBindVertexArray(0);
 
         if (!mesh.texture.pixels.empty()) {
@@ -97,6 +125,13 @@ void ClothRenderer::draw_triangles(const Cloth& cloth) const {
 
 void ClothRenderer::draw_shapes() const {
     for (const Cloth& cloth : cloths_) draw_triangles(cloth);
+}
+
+void ClothRenderer::draw_coarse() const {
+    for (const Cloth& cloth : cloths_) {
+        glBindVertexArray(cloth.coarse_array);
+        glDrawElements(GL_TRIANGLES, cloth.coarse_count, GL_UNSIGNED_INT, nullptr);
+    }
 }
 
 void ClothRenderer::draw_fabric() const {

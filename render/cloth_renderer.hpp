@@ -20,6 +20,8 @@ public:
 
     /// Triangles only: position at attribute 0, normal at 1, uv at 2, colour at 3.
     void draw_shapes() const;
+    /// The same in at most a few thousand triangles, for the small maps of sky light. Position only.
+    void draw_coarse() const;
     void draw_fabric() const;
 
 private:
@@ -29,7 +31,9 @@ private:
     struct Cloth {
         const ClothMesh* mesh = nullptr;
         GlVertexArray vertex_array;
-        GlBuffer vertices, uvs, colors, indices;
+        GlBuffer vertices, uvs, colors, indices, coarse_indices;
+        GlVertexArray coarse_array;
+        GLsizei coarse_count = 0;
         GlTexture texture;
         Vec2f picture_scale{1, 1};  ///< 1/m
     };

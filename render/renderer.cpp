@@ -127,11 +127,14 @@ void Renderer::Parts::clear(Rgb background) const {
 
 void Renderer::Parts::draw_textured(const DrawFrame& frame) {
     cloths.update_shape(frame);
-    shadows.draw([&](const Eigen::Matrix4f& transform) {
+    shadows.draw([&](const Eigen::Matrix4f& transform, bool coarse) {
         depth.use();
-        solids.draw_shapes(frame, depth_transform, transform);
+        solids.draw_shapes(frame, depth_transform, transform, coarse);
         glUniformMatrix4fv(depth_transform, 1, GL_FALSE, transform.data());
-        cloths.draw_shapes();
+        if (coarse)
+            cloths.draw_coarse();
+        else
+            cloths.draw_shapes();
     });
     framebuffer.bind();
     clear(scene->background);

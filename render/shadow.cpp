@@ -91,14 +91,14 @@ void ShadowMaps::draw(const DrawCasters& draw_casters) const {
     glBindFramebuffer(GL_FRAMEBUFFER, key_target_);
     glViewport(0, 0, key_size_, key_size_);
     glClear(GL_DEPTH_BUFFER_BIT);
-    draw_casters(key_transform_);
+    draw_casters(key_transform_, false);
 
     glBindFramebuffer(GL_FRAMEBUFFER, sky_target_);
     glViewport(0, 0, columns * tile, rows * tile);
     glClear(GL_DEPTH_BUFFER_BIT);
     for (int k = 0; k < FrameBlock::sky_directions; ++k) {
         glViewport((k % columns) * tile, (k / columns) * tile, tile, tile);
-        draw_casters(sky_transforms_[k]);
+        draw_casters(sky_transforms_[k], true);
     }
     glDisable(GL_POLYGON_OFFSET_FILL);
 }

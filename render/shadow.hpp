@@ -12,8 +12,9 @@ namespace unravel {
 /// over the sky, whose mean tells each vertex how open it lies (ambient occlusion from the true geometry).
 class ShadowMaps {
 public:
-    /// `draw(transform)` draws everything that casts a shadow, world to clip space.
-    using DrawCasters = std::function<void(const Eigen::Matrix4f& transform)>;
+    /// `draw(transform, coarse)` draws everything that casts a shadow, world to clip space; coarsely for
+    /// small maps.
+    using DrawCasters = std::function<void(const Eigen::Matrix4f& transform, bool coarse)>;
 
     /// Maps cover the sphere around the scene's bounds.
     ShadowMaps(const DrawScene& scene, int key_size);

@@ -2,9 +2,15 @@
 
 #include "render/color.hpp"
 #include "render/shadow.hpp"
-#include "render/solid_shapes.hpp"
 
 namespace unravel {
+
+namespace {
+
+// The component view shows no more ground than tells where it lies.
+constexpr float quiet_ground = 0.3f;
+
+}  // namespace
 
 SolidRenderer::SolidRenderer(const DrawScene& scene)
     : scene_(&scene),
@@ -17,30 +23,38 @@ SolidRenderer::SolidRenderer(const DrawScene& scene)
       fades_(shaded_.uniform("fades")),
       fade_centre_(shaded_.uniform("fade_centre")) {
     ShadowMaps::connect(shaded_);
-    const auto add = [&](const Tessellation& mesh, int solid, bool fades, Rgb color) {
-        Part& part = parts_.emplace_back();
-        part.count = static_cast<GLsizei>(mesh.indices.size());
-        part.solid = solid;
-        part.fades = fades;
-        part.albedo = linear(color);
-        std::vector<Vec3f> vertices;
-        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-            vertices.push_back(mesh.positions[i]);
-            vertices.push_back(mesh.normals[i]);
-        }
-        glBindVertexArray(part.vertex_array);
-        fill_buffer(GL_ARRAY_BUFFER, part.vertices, vertices);
-        float_attribute(0, 3, 2 * sizeof(Vec3f), 0);
-        float_attribute(1, 3, 2 * sizeof(Vec3f), sizeof(Vec3f));
-        fill_buffer(GL_ELEMENT_ARRAY_BUFFER, part.indices, mesh.indices);
-        glBindVertexArray(0);
-    };
-    if (scene.show_ground) add(tessellate_ground(reach_), -1, true, scene.ground);
     for (std::size_t i = 0; i < scene.solids.size(); ++i) {
-        const bool plane = scene.solids[i].shape == SolidShape::plane;
-        add(plane ? tessellate_ground(reach_) : tessellate(scene.solids[i]), static_cast<int>(i), plane,
-            scene.solids[i].color);
+        const SolidMesh& solid = scene.solids[i];
+        if (solid.shape != SolidShape::plane)
+            parts_.push_back({Mesh(tessellate(solid)), Mesh(tessellate(solid, 0.4f)), static_cast<int>(i),
+                              false, linear(solid.color)});
     }
+    // What covers most of the picture comes last: little of it is left to shade.
+    for (std::size_t i = 0; i < scene.solids.size(); ++i)
+        if (scene.solids[i].shape == SolidShape::plane)
+            parts_.push_back({Mesh(tessellate_ground(reach_)), Mesh({}), static_cast<int>(i), true,
+                              linear(scene.solids[i].color)});
+    if (scene.show_ground)
+        parts_.push_back({Mesh(tessellate_ground(reach_)), Mesh({}), -1, true, linear(scene.ground)});
+}
+
+SolidRenderer::Mesh::Mesh(const Tessellation& shape) : count(static_cast<GLsizei>(shape.indices.size())) {
+    std::vector<Vec3f> interleaved;
+    for (std::size_t i = 0; i < shape.positions.size(); ++i) {
+        interleaved.push_back(shape.positions[i]);
+        interleaved.push_back(shape.normals[i]);
+    }
+    glBindVertexArray(vertex_array);
+    fill_buffer(GL_ARRAY_BUFFER, vertices, interleaved);
+    float_attribute(0, 3, 2 * sizeof(Vec3f), 0);
+    float_attribute(1, 3, 2 * sizeof(Vec3f), sizeof(Vec3f));
+    fill_buffer(GL_ELEMENT_ARRAY_BUFFER, indices, shape.indices);
+    glBindVertexArray(0);
+}
+
+void SolidRenderer::Mesh::draw() const {
+    glBindVertexArray(vertex_array);
+    glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, nullptr);
 }
 
 Eigen::Matrix4f SolidRenderer::pose(const Part& part, const DrawFrame& frame) const {
@@ -58,18 +72,13 @@ Eigen::Matrix4f SolidRenderer::pose(const Part& part, const DrawFrame& frame) co
     return pose.matrix();
 }
 
-void SolidRenderer::draw_part(const Part& part) const {
-    glBindVertexArray(part.vertex_array);
-    glDrawElements(GL_TRIANGLES, part.count, GL_UNSIGNED_INT, nullptr);
-}
-
 void SolidRenderer::draw_shapes(const DrawFrame& frame, GLint transform_uniform,
-                                const Eigen::Matrix4f& transform) const {
+                                const Eigen::Matrix4f& transform, bool coarse) const {
     for (const Part& part : parts_) {
         if (part.fades) continue;  // nothing lies below a plane
         const Eigen::Matrix4f matrix = transform * pose(part, frame);
         glUniformMatrix4fv(transform_uniform, 1, GL_FALSE, matrix.data());
-        draw_part(part);
+        (coarse ? part.coarse : part.fine).draw();
     }
 }
 
@@ -83,21 +92,22 @@ void SolidRenderer::draw_shaded(const DrawFrame& frame) const {
         glUniform1f(gloss_, part.fades ? 0.15f : 1.f);
         glUniform1i(fades_, part.fades);
         glUniform3fv(fade_centre_, 1, middle.data());
-        draw_part(part);
+        part.fine.draw();
     }
 }
 
 void SolidRenderer::draw_quiet(const DrawFrame& frame, const SurfaceUniforms& uniforms) const {
     for (const Part& part : parts_) {
-        const Eigen::Matrix4f matrix = pose(part, frame);
+        Eigen::Matrix4f matrix = pose(part, frame);
         const Vec3f middle = matrix.block<3, 1>(0, 3);
         // Greys that stay behind the wires.
         const float grey = part.fades ? 0.034f : 0.10f;
+        if (part.fades) matrix.block<3, 3>(0, 0) *= quiet_ground;
         glUniformMatrix4fv(uniforms.model, 1, GL_FALSE, matrix.data());
         glUniform4f(uniforms.tint, grey, 1.03f * grey, 1.1f * grey, 1);
         glUniform1i(uniforms.fades, part.fades);
         glUniform3fv(uniforms.fade_centre, 1, middle.data());
-        draw_part(part);
+        part.fine.draw();
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include "render/draw_scene.hpp"
 #include "render/gl_objects.hpp"
+#include "render/solid_shapes.hpp"
 
 namespace unravel {
 
@@ -16,8 +17,10 @@ public:
     /// How far planes and ground go from the scene's centre [m].
     float reach() const { return reach_; }
 
-    /// What casts shadows, by the program in use, whose matrix `transform` is set for each.
-    void draw_shapes(const DrawFrame& frame, GLint transform_uniform, const Eigen::Matrix4f& transform) const;
+    /// What casts shadows, by the program in use, whose matrix `transform` is set for each. `coarse`: for
+    /// small maps.
+    void draw_shapes(const DrawFrame& frame, GLint transform_uniform, const Eigen::Matrix4f& transform,
+                     bool coarse) const;
     void draw_shaded(const DrawFrame& frame) const;
     /// The component view's quiet version, by the program in use.
     struct SurfaceUniforms {
@@ -26,16 +29,21 @@ public:
     void draw_quiet(const DrawFrame& frame, const SurfaceUniforms& uniforms) const;
 
 private:
-    struct Part {
+    struct Mesh {
         GlVertexArray vertex_array;
         GlBuffer vertices, indices;
         GLsizei count = 0;
+
+        explicit Mesh(const Tessellation& shape);
+        void draw() const;
+    };
+    struct Part {
+        Mesh fine, coarse;
         int solid = -1;  ///< −1: the ground
         bool fades = false;
         Vec3f albedo;  ///< linear
     };
     Eigen::Matrix4f pose(const Part& part, const DrawFrame& frame) const;
-    void draw_part(const Part& part) const;
 
     const DrawScene* scene_;
     Vec3f centre_;

@@ -35,8 +35,7 @@ struct ProfilePoint {
 };
 
 /// Profile from top to bottom.
-Tessellation turn(const std::vector<ProfilePoint>& profile) {
-    constexpr int sectors = 96;
+Tessellation turn(const std::vector<ProfilePoint>& profile, int sectors) {
     Tessellation mesh;
     add_grid(mesh, static_cast<int>(profile.size()) - 1, sectors, [&](int r, int c, Vec3f& p, Vec3f& n) {
         const ProfilePoint& at = profile[r];
@@ -56,32 +55,33 @@ void add_arc(std::vector<ProfilePoint>& profile, float centre, float y, float ra
     }
 }
 
-Tessellation tessellate_cylinder(const SolidMesh& solid) {
+Tessellation tessellate_cylinder(const SolidMesh& solid, int sectors) {
     const float half = 0.5f * solid.height, round = std::min({solid.round, solid.radius, half});
     std::vector<ProfilePoint> profile;
     const float flat = solid.radius - round;
     for (const float t : {0.f, 0.3f, 0.6f, 0.85f, 1.f}) profile.push_back({flat * t, half, 0, 1});
-    add_arc(profile, flat, half - round, round, 0, pi / 2, 8);
+    add_arc(profile, flat, half - round, round, 0, pi / 2, 6);
     for (int i = 1; i < 16; ++i) profile.push_back({solid.radius, (half - round) * (1 - i / 8.f), 1, 0});
-    add_arc(profile, flat, round - half, round, pi / 2, pi, 8);
+    add_arc(profile, flat, round - half, round, pi / 2, pi, 6);
     for (const float t : {1.f, 0.85f, 0.6f, 0.3f, 0.f}) profile.push_back({flat * t, -half, 0, -1});
-    return turn(profile);
+    return turn(profile, sectors);
 }
 
-Tessellation tessellate_capsule(const SolidMesh& solid) {
+Tessellation tessellate_capsule(const SolidMesh& solid, int sectors) {
     const float half = 0.5f * solid.height;
     std::vector<ProfilePoint> profile;
-    add_arc(profile, 0, half, solid.radius, 0, pi / 2, 24);
+    add_arc(profile, 0, half, solid.radius, 0, pi / 2, sectors / 4);
     for (int i = 1; i < 16; ++i) profile.push_back({solid.radius, half * (1 - i / 8.f), 1, 0});
-    add_arc(profile, 0, -half, solid.radius, pi / 2, pi, 24);
-    return turn(profile);
+    add_arc(profile, 0, -half, solid.radius, pi / 2, pi, sectors / 4);
+    return turn(profile, sectors);
 }
 
-Tessellation tessellate_box(const SolidMesh& solid) {
+Tessellation tessellate_box(const SolidMesh& solid, int straight) {
     const Vec3f half = 0.5f * solid.size;
     const float round = std::clamp(solid.round, 0.f, half.minCoeff());
     // Along each axis of a face: an arc at either end and straight steps between, as signed offsets.
-    constexpr int arc = 6, straight = 16, steps = 2 * arc + straight;
+    constexpr int arc = 4;
+    const int steps = 2 * arc + straight;
     const auto along = [&](int i,
                            float half_length) -> std::pair<float, float> {  // (inner point, tangent of tilt)
         const float inner = half_length - round;
@@ -112,27 +112,28 @@ Tessellation tessellate_box(const SolidMesh& solid) {
 
 }  // namespace
 
-Tessellation tessellate(const SolidMesh& solid) {
+Tessellation tessellate(const SolidMesh& solid, float detail) {
+    const int sectors = static_cast<int>(72 * detail);
     switch (solid.shape) {
         case SolidShape::plane:
             return {};
         case SolidShape::sphere: {
             std::vector<ProfilePoint> profile;
-            add_arc(profile, 0, 0, solid.radius, 0, pi, 64);
-            return turn(profile);
+            add_arc(profile, 0, 0, solid.radius, 0, pi, sectors / 2);
+            return turn(profile, sectors);
         }
         case SolidShape::box:
-            return tessellate_box(solid);
+            return tessellate_box(solid, static_cast<int>(12 * detail));
         case SolidShape::cylinder:
-            return tessellate_cylinder(solid);
+            return tessellate_cylinder(solid, sectors);
         case SolidShape::capsule:
-            return tessellate_capsule(solid);
+            return tessellate_capsule(solid, sectors);
     }
     return {};
 }
 
 Tessellation tessellate_ground(float reach) {
-    constexpr int steps = 96;
+    constexpr int steps = 32;
     // Cubic spacing: three times finer in the middle, where shadows of the scene fall.
     const auto spread = [&](int i) {
         const float t = 2.f * i / steps - 1;

@@ -12,7 +12,8 @@ struct Tessellation {
 
 /// Sphere, box (edges rounded by `round`), cylinder or capsule as SolidMesh describes them, fine enough that
 /// their outline looks round at 1080p. A plane gives nothing: it is drawn as ground.
-Tessellation tessellate(const SolidMesh& solid);
+/// `detail` 1 is for the eye; less gives coarser, inscribed shapes.
+Tessellation tessellate(const SolidMesh& solid, float detail = 1);
 
 /// Square of half-width `reach` in the plane y = 0 facing +y, finer towards its middle.
 Tessellation tessellate_ground(float reach);

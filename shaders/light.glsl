@@ -26,8 +26,8 @@ float key_visibility(vec3 p, vec3 n) {
             count += 1.0;
         }
     }
-    float width = shadow.x / shadow.y;
-    if (count > 0.0) width = max(width, (at.z - sum / count) * key_direction.w);
+    if (count == 0.0) return 1.0;
+    float width = max(shadow.x / shadow.y, (at.z - sum / count) * key_direction.w);
     float lit = 0.0;
     for (int i = 0; i < 8; ++i) {
         float r = sqrt((float(i) + 0.5) / 8.0), phi = float(i) * 2.3999632 + 1.0;

@@ -12,6 +12,6 @@ void main() {
     float facing = abs(dot(n, v)), above = 0.5 + 0.5 * n.y * (gl_FrontFacing ? 1.0 : -1.0);
     float shade = (0.35 + 0.65 * facing) * (0.7 + 0.3 * above);
     vec3 base = mix(surface_color * strength, tint.rgb, tint.w);
-    float fade = fades ? smoothstep(0.5 * ground.z, 0.7 * ground.w, distance(world, fade_centre)) : 0.0;
+    float fade = fades ? smoothstep(0.1, 0.28, distance(world, fade_centre) / ground.w) : 0.0;
     color = vec4(mix(base * shade, background.rgb, fade), 1.0);
 }

@@ -40,6 +40,9 @@ struct Sheet {
             float r = cover * std::sin(along / cover) + 0.3f * below;
             const float y = height + cover * std::cos(along / cover) - 0.93f * below;
             r += below * 0.36f * std::cos(8 * angle + phase) * std::min(1.f, below / 0.1f);
+            // Folds lie against the sphere, not in it.
+            const float drop = std::min(std::abs(y - height), cover);
+            r = std::max(r, std::sqrt(cover * cover - drop * drop));
             frame.positions.push_back({r * std::cos(angle), std::max(y, 0.005f), r * std::sin(angle)});
         }
         scene.cloths.push_back(std::move(mesh));
