@@ -1,6 +1,7 @@
 #include "tool/interrupt.hpp"
 
 #include <csignal>
+#include <initializer_list>
 
 namespace unravel {
 
