@@ -96,6 +96,15 @@ SourcePlace endless_key(std::string_view text) {
     return {};
 }
 
+/// The library's words without what only its programmers need.
+std::string reason(std::string_view description) {
+    if (description.find("maximum nested value depth") != std::string_view::npos)
+        return "lists and tables are nested too deep";
+    constexpr std::string_view opening = "Error while parsing ";
+    if (description.starts_with(opening)) description.remove_prefix(opening.size());
+    return std::string(description);
+}
+
 void move_to_option(Node& node, int option, int shift) {
     const auto move = [&](SourcePlace& place) { place = {1, place.column + shift, option}; };
     move(node.place);
@@ -125,7 +134,7 @@ std::string_view kind_name(Node::Kind kind) {
         case Node::Kind::integer:
             return "a whole number";
         case Node::Kind::number:
-            return "a number";
+            return "a decimal number";
         case Node::Kind::text:
             return "a text";
         case Node::Kind::date:
@@ -148,8 +157,7 @@ bool parse_document(std::string_view text, Node& root, std::vector<SceneProblem>
         root.place = {1, 1, 0};
         return true;
     } catch (const toml::parse_error& error) {
-        problems.push_back(
-            {place_of(error.source()), "this is not TOML: " + std::string(error.description()), ""});
+        problems.push_back({place_of(error.source()), "this is not TOML", reason(error.description())});
         return false;
     }
 }

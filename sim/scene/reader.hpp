@@ -55,6 +55,7 @@ protected:
 private:
     /// The key's value if it is there and may be; marks the key as known.
     const Node* take(const Key&);
+    void know(std::string_view key);
     std::string path_of(std::string_view key) const;
     void report(std::string_view key, SourcePlace place, std::string what, std::string hint = {});
     bool wrong_kind(std::string_view key, const Node& value, std::string_view wanted);
