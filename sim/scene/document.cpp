@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "sim/scene/limits.hpp"
+#include "sim/scene/unfit_text.hpp"
 
 namespace unravel {
 
@@ -55,45 +55,6 @@ Node convert(const toml::node& node) {
     }
     out.place = place_of(node.source());
     return out;
-}
-
-/// The first dotted key with more parts than anyone needs, {0, 0} if there is none. The library builds a
-/// table for each part and frees them by recursion, so a long enough key would exhaust the stack.
-SourcePlace endless_key(std::string_view text) {
-    int line = 1, column = 0;
-    std::size_t dots = 0;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        ++column;
-        const char c = text[i];
-        if (c == '\n') {
-            ++line;
-            column = 0;
-        }
-        if (c == '\n' || c == '=' || c == ',' || c == '{' || c == '[') dots = 0;
-        if (c == '.' && ++dots >= max_key_parts) return {line, column, 0};
-        if (c == '#') {
-            while (i + 1 < text.size() && text[i + 1] != '\n') ++i;
-        }
-        if (c != '"' && c != '\'') continue;
-        const bool multi = text.substr(i, 3) == std::string(3, c);
-        const std::string_view end = text.substr(i, multi ? 3 : 1);
-        for (i += end.size(); i < text.size() && text.substr(i, end.size()) != end; ++i) {
-            if (!multi && text[i] == '\n') break;
-            if (text[i] == '\n') {
-                ++line;
-                column = 0;
-            }
-            if (c == '"' && text[i] == '\\') ++i;
-        }
-        // A multi-line text may end in up to two quotes of its own.
-        if (multi) {
-            i += 2;
-            while (i + 1 < text.size() && text[i + 1] == c) ++i;
-        } else if (i < text.size() && text[i] == '\n') {
-            --i;
-        }
-    }
-    return {};
 }
 
 /// The library's words without what only its programmers need.
@@ -148,8 +109,8 @@ std::string_view kind_name(Node::Kind kind) {
 }
 
 bool parse_document(std::string_view text, Node& root, std::vector<SceneProblem>& problems) {
-    if (const SourcePlace place = endless_key(text); place.line > 0) {
-        problems.push_back({place, "a key of more than 16 parts", ""});
+    if (std::optional<SceneProblem> problem = unfit_text(text)) {
+        problems.push_back(std::move(*problem));
         return false;
     }
     try {
@@ -164,7 +125,7 @@ bool parse_document(std::string_view text, Node& root, std::vector<SceneProblem>
 
 bool parse_value(std::string_view text, int option, int shift, Node& value) {
     const std::string line = "v=" + std::string(text);
-    if (endless_key(line).line > 0) return false;
+    if (unfit_text(line)) return false;
     try {
         const toml::table table = toml::parse(line);
         if (table.size() != 1) return false;

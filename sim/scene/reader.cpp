@@ -23,6 +23,7 @@ void Reader::know(std::string_view key) {
 }
 
 void Reader::report(std::string_view key, SourcePlace place, std::string what, std::string hint) {
+    if (shared_.problems.size() >= max_problems) return;
     shared_.places.mark_bad(path_of(key));
     shared_.problems.push_back({place, std::move(what), std::move(hint)});
 }
@@ -88,12 +89,13 @@ void Reader::finish() {
 void Reader::report_unknown(const Entry& entry) {
     std::string hint;
     const std::string_view near = most_similar(entry.key, known_, 1);
-    const std::vector<std::string> tables = tables_with_key(entry.key);
+    if (shared_.tables_of_keys.empty()) shared_.tables_of_keys = tables_of_keys();
+    const auto elsewhere = shared_.tables_of_keys.find(entry.key);
     const std::string_view far = most_similar(entry.key, known_);
     if (!near.empty() && entry.key.size() > 2) {
         hint = fmt::format("did you mean '{}'?", near);
-    } else if (!tables.empty()) {
-        const std::vector<std::string_view> views(tables.begin(), tables.end());
+    } else if (elsewhere != shared_.tables_of_keys.end()) {
+        const std::vector<std::string_view> views(elsewhere->second.begin(), elsewhere->second.end());
         hint = fmt::format("it belongs in {}",
                            one_of(std::span(views).first(std::min<std::size_t>(3, views.size())), '\0'));
     } else if (!far.empty()) {

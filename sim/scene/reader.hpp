@@ -12,6 +12,7 @@ namespace unravel {
 struct Reading {
     std::vector<SceneProblem>& problems;
     Places& places;
+    std::map<std::string, std::vector<std::string>> tables_of_keys = {};  ///< made for the first unknown key
 };
 
 class Reader : public Fields {

@@ -186,6 +186,12 @@ TEST_CASE("a file that is too large or can't be read is refused", "[scene]") {
     CHECK_THAT(problems[0], Catch::Contains("too large"));
 }
 
+TEST_CASE("a large file that is no scene is refused with a bounded list of problems", "[scene]") {
+    std::string text;
+    for (int i = 0; text.size() + 20 < max_scene_bytes; ++i) text += "k" + std::to_string(i) + "=1\n";
+    CHECK(problems_of(text).size() <= max_problems + 1);
+}
+
 TEST_CASE("text that is no UTF-8 or holds control characters is refused and never echoed raw", "[scene]") {
     for (const std::string& text :
          {std::string("[cloth]\nname = \"a\xff\"\n"), std::string("[cloth]\nname = \"a\0b\"\n", 21),
