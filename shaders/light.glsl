@@ -1,5 +1,4 @@
 // Key light with soft shadows, hemisphere of ambient light, tone curve.
-uniform sampler2DShadow shadow_compare;
 uniform sampler2D shadow_depth;
 
 // Share of the key light that reaches p, whose surface faces the light along n (dot(n, l) > 0).
@@ -33,13 +32,13 @@ float key_visibility(vec3 p, vec3 n) {
     }
     float width = max(shadow.x / shadow.y, (at.z - sum / max(count, 1.0)) * key_direction.w);
     float lit = 0.0;
-    taps = count > 0.0 ? 8 : 0;
+    taps = count > 0.0 ? 12 : 0;
     for (int i = 0; i < taps; ++i) {
-        float r = sqrt((float(i) + 0.5) / 8.0) * width;
+        float r = sqrt((float(i) + 0.5) / 12.0) * width;
         spoke = golden * spoke;
-        lit += texture(shadow_compare, vec3(at.xy + spoke * r, at.z - 0.35 * r));
+        lit += step(at.z - 0.35 * r - 0.0004, texture(shadow_depth, at.xy + spoke * r).r);
     }
-    return count > 0.0 ? lit / 8.0 : 1.0;
+    return count > 0.0 ? lit / 12.0 : 1.0;
 }
 
 // Light from all around at normal n, as if nothing stood in the way.
