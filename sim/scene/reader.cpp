@@ -82,6 +82,7 @@ void Reader::exactly_one(std::initializer_list<std::string_view> keys) {
 
 void Reader::finish() {
     for (const Entry& entry : table_.entries) {
+        if (shared_.problems.size() >= max_problems) return;
         if (std::find(known_.begin(), known_.end(), entry.key) == known_.end()) report_unknown(entry);
     }
 }

@@ -122,6 +122,7 @@ TEST_CASE("a preset gives the numbers that are not said, and the density", "[sce
     CHECK(regions[0].material->shear == 40);
     CHECK(regions[0].material->bend == 1e-3);
     CHECK(!regions[0].density);
+    CHECK(regions[0].material->preset.empty());  // else it would bring its density when read back
     CHECK(regions[1].material->shear == find_preset("silk")->material.shear);
     CHECK(regions[1].density == find_preset("silk")->density);
 }

@@ -90,8 +90,8 @@ TEST_CASE("what is no option is refused with what one looks like", "[scene]") {
         INFO(option);
         CHECK(problem_of(one_cloth, option) != "");
     }
-    for (const std::string value :
-         {"", " ", "[1, 2", "\"open", "1\nsolver.decompose=false", "{a=1", "1, 2", "= 3"}) {
+    for (const std::string value : {"", " ", "[1, 2", "\"open", "1\nsolver.decompose=false", "one\ntwo",
+                                    "1\n", "{a=1", "1, 2", "= 3"}) {
         INFO(value);
         CHECK_THAT(problem_of(one_cloth, "clip.duration=" + value), Catch::StartsWith("15 this is no value"));
     }
