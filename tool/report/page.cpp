@@ -8,6 +8,7 @@
 #include "sim/effects.hpp"
 #include "sim/scene/load.hpp"
 #include "tool/progress.hpp"
+#include "tool/report/html.hpp"
 #include "tool/report/page_files.hpp"
 #include "tool/report/series.hpp"
 
@@ -77,35 +78,6 @@ std::string script_safe(const Json& json) {
     return text;
 }
 
-std::string html_text(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '<') {
-            out += "&lt;";
-        } else if (c == '&') {
-            out += "&amp;";
-        } else {
-            out += c;
-        }
-    }
-    return out;
-}
-
-// {{name}} → value, in one pass, so that a value may hold anything.
-std::string fill(std::string_view page, const std::vector<std::pair<std::string, std::string_view>>& values) {
-    std::string out;
-    for (;;) {
-        const std::size_t open = page.find("{{"), close = page.find("}}", open);
-        out += page.substr(0, open);
-        if (open == page.npos || close == page.npos) return out;
-        const std::string_view name = page.substr(open + 2, close - open - 2);
-        for (const auto& [key, value] : values) {
-            if (key == name) out += value;
-        }
-        page.remove_prefix(close + 2);
-    }
-}
-
 }  // namespace
 
 PageFacts page_facts(const Json& run) {
@@ -167,14 +139,14 @@ std::string report_page(const Scene& scene, const ClothModel& model, const RunFo
 
     const std::string title = html_text(scene.name), data_text = script_safe(data);
     const std::string pictures_text = script_safe(pictures.is_null() ? Json::object() : pictures);
-    return fill(page_file("report.html"), {{"title", title},
-                                           {"library_style", page_file("dygraph.min.css")},
-                                           {"style", page_file("report.css")},
-                                           {"data", data_text},
-                                           {"pictures", pictures_text},
-                                           {"library", page_file("dygraph.min.js")},
-                                           {"plots", page_file("report_plots.js")},
-                                           {"script", page_file("report.js")}});
+    return fill_page(page_file("report.html"), {{"title", title},
+                                                {"library_style", page_file("dygraph.min.css")},
+                                                {"style", page_file("report.css")},
+                                                {"data", data_text},
+                                                {"pictures", pictures_text},
+                                                {"library", page_file("dygraph.min.js")},
+                                                {"plots", page_file("report_plots.js")},
+                                                {"script", page_file("report.js")}});
 }
 
 }  // namespace unravel
