@@ -15,6 +15,7 @@ FrameRecord record_of(const Simulation& simulation) {
     for (const Constraint& c : simulation.ws.constraints.all()) record.free[c.particle] = c.free;
     record.component = simulation.ws.components.label;
     record.springs = simulation.ws.extension.state;
+    record.solves = simulation.ws.solves;
     // Before the first step nothing is decomposed yet.
     record.component.resize(n, 0);
     record.springs.resize(simulation.model.springs.size(), SpringState::inactive);
@@ -47,15 +48,18 @@ FrameRecord first_record(const Simulation& simulation) {
     return record_of(simulation);
 }
 
+StepReport next_step(Simulation& simulation) {
+    const int rate = simulation.fps * simulation.steps_per_frame;
+    StepReport report =
+        step(simulation.model, simulation.options, 1.0 / rate, simulation.state, simulation.ws);
+    simulation.state.t = static_cast<double>(simulation.state.step) / rate;
+    report.t = simulation.state.t;
+    return report;
+}
+
 FrameRecord next_record(Simulation& simulation) {
     std::vector<StepReport> reports;
-    const int rate = simulation.fps * simulation.steps_per_frame;
-    for (int k = 0; k < simulation.steps_per_frame; ++k) {
-        reports.push_back(
-            step(simulation.model, simulation.options, 1.0 / rate, simulation.state, simulation.ws));
-        simulation.state.t = static_cast<double>(simulation.state.step) / rate;
-        reports.back().t = simulation.state.t;
-    }
+    for (int k = 0; k < simulation.steps_per_frame; ++k) reports.push_back(next_step(simulation));
     ++simulation.frame;
     FrameRecord record = record_of(simulation);
     record.reports = std::move(reports);

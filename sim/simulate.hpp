@@ -24,8 +24,12 @@ Simulation start_simulation(const Scene& scene);
 /// Goes on from a record instead of from the start.
 void restore(Simulation& simulation, const FrameRecord& record);
 
-/// The frame that the simulation stands at, before any step.
+/// What the simulation stands at: its state, and what its last step was; before any step, frame 0.
 FrameRecord first_record(const Simulation& simulation);
+
+/// One step on the way to the next frame. Throws SimulationError, after which the simulation stands where it
+/// stood.
+StepReport next_step(Simulation& simulation);
 
 /// Steps to the next frame. Frame k is reached at exactly k/fps: time is counted in steps, not summed. Throws
 /// SimulationError, after which the simulation stands where the failing step began.

@@ -1,0 +1,40 @@
+#include "tool/report/html.hpp"
+
+namespace unravel {
+
+std::string html_text(std::string_view text) {
+    std::string out;
+    for (const char c : text) {
+        switch (c) {
+            case '<':
+                out += "&lt;";
+                break;
+            case '&':
+                out += "&amp;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            default:
+                out += c;
+        }
+    }
+    return out;
+}
+
+std::string fill_page(std::string_view page,
+                      const std::vector<std::pair<std::string_view, std::string_view>>& values) {
+    std::string out;
+    for (;;) {
+        const std::size_t open = page.find("{{"), close = page.find("}}", open);
+        out += page.substr(0, open);
+        if (open == page.npos || close == page.npos) return out;
+        const std::string_view name = page.substr(open + 2, close - open - 2);
+        for (const auto& [key, value] : values) {
+            if (key == name) out += value;
+        }
+        page.remove_prefix(close + 2);
+    }
+}
+
+}  // namespace unravel
