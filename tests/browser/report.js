@@ -65,7 +65,7 @@
     check('an address beyond the end shows the last frame', number() === end);
     key('Home');
     key(' ');
-    await rest(700);
+    await rest(250);
     check('Space plays', number() > 0);
     key(' ');
     const stopped = number();
