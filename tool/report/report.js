@@ -127,7 +127,7 @@ function readAddress() {
 
 function stop() {
   if (!playing) return;
-  cancelAnimationFrame(playing.request);
+  clearTimeout(playing.timer);
   playing = null;
   element('play').textContent = '▶';
   element('play').setAttribute('aria-label', 'Play');
@@ -136,16 +136,17 @@ function stop() {
 
 function play() {
   if (playing) return stop();
-  playing = {begin: performance.now(), from: current === last ? 0 : current, request: 0};
+  playing = {begin: performance.now(), from: current === last ? 0 : current, timer: 0};
   element('play').textContent = '❚❚';
   element('play').setAttribute('aria-label', 'Stop');
-  const advance = (now) => {
-    const index = playing.from + Math.floor(((now - playing.begin) / 1000) * data.fps);
+  // Frames follow the clock, so that a slow machine leaves some out instead of playing in slow motion.
+  const advance = () => {
+    const index = playing.from + Math.floor(((performance.now() - playing.begin) / 1000) * data.fps);
     show(index);
     if (index >= last) return stop();
-    playing.request = requestAnimationFrame(advance);
+    playing.timer = setTimeout(advance, 1000 / data.fps);
   };
-  playing.request = requestAnimationFrame(advance);
+  advance();
 }
 
 function seek(index) {

@@ -35,7 +35,8 @@ function shortNumber(value) {
 function makePlots(parent, numbers, series, seek) {
   const style = getComputedStyle(document.documentElement);
   const read = () => ({axisLineColor: style.getPropertyValue('--line'), gridLineColor: style.getPropertyValue('--line')});
-  const plots = plotList(series).map((spec) => {
+  // All boxes first: how wide a plot is depends on how many share the row.
+  const boxes = plotList(series).map((spec) => {
     const box = document.createElement('div');
     box.className = 'plot';
     const heading = document.createElement('h3');
@@ -47,6 +48,9 @@ function makePlots(parent, numbers, series, seek) {
     canvas.setAttribute('role', 'img');
     box.append(heading, legend, canvas);
     parent.append(box);
+    return {spec, legend, canvas};
+  });
+  const plots = boxes.map(({spec, legend, canvas}) => {
     const rows = numbers.map((number, k) => [number, ...spec.names.map((name) => series[name][k])]);
     const graph = new Dygraph(canvas, rows, {
       labels: ['frame', ...spec.names.map((name) => spec.columns[name])],
