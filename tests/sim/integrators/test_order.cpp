@@ -40,10 +40,11 @@ void finish(Problem& p) {
     p.model.bend_adjacency = adjacency_of(p.start.x.size(), {}, {});
 }
 
-// n equal masses between two walls on taut springs, moved along the line: x_k = k d + a sin(π k/(n+1)) cos ωt,
-// ω = 2 √(k_s/m) sin(π/(2(n+1))). All springs stay in extension, so that the forces are linear.
+// n equal masses between two walls on taut springs, moved along the line: x_k = k d + a sin(π k/(n+1)) cos
+// ωt, ω = 2 √(k_s/m) sin(π/(2(n+1))). All springs stay in extension, so that the forces are linear.
 constexpr int chain_masses = 9;
-constexpr double chain_stiffness = 40, chain_mass = 0.1, chain_rest = 0.08, chain_gap = 0.1, chain_swing = 0.01;
+constexpr double chain_stiffness = 40, chain_mass = 0.1, chain_rest = 0.08, chain_gap = 0.1,
+                 chain_swing = 0.01;
 
 double chain_mode(int k) {
     return std::sin(M_PI * k / (chain_masses + 1));
@@ -56,8 +57,9 @@ Problem chain() {
         p.model.mass.push_back(chain_mass);
         p.start.x.emplace_back(chain_gap * k + chain_swing * chain_mode(k), 0, 0);
         p.start.v.emplace_back(0, 0, 0);
-        if (k > 0) add_spring(p, static_cast<std::uint32_t>(k - 1), static_cast<std::uint32_t>(k), chain_rest,
-                              chain_stiffness, 0);
+        if (k > 0)
+            add_spring(p, static_cast<std::uint32_t>(k - 1), static_cast<std::uint32_t>(k), chain_rest,
+                       chain_stiffness, 0);
     }
     pin(p, 0);
     pin(p, chain_masses + 1);
@@ -66,7 +68,8 @@ Problem chain() {
 }
 
 std::vector<Vec3> chain_at(double t) {
-    const double omega = 2 * std::sqrt(chain_stiffness / chain_mass) * std::sin(M_PI / (2 * (chain_masses + 1)));
+    const double omega =
+        2 * std::sqrt(chain_stiffness / chain_mass) * std::sin(M_PI / (2 * (chain_masses + 1)));
     std::vector<Vec3> x;
     for (int k = 0; k <= chain_masses + 1; ++k)
         x.emplace_back(chain_gap * k + chain_swing * chain_mode(k) * std::cos(omega * t), 0, 0);
@@ -80,8 +83,8 @@ Problem pendulum() {
     p.duration = 0.5;
     p.model.gravity = {0, -9.81, 0};
     p.model.mass = {0.1, 0.1, 0.07};
-    p.start.x = {{0, 0, 0}, {0.2, -0.42, 0}, {0.3, -0.86, 0.1}};
-    p.start.v = {{0, 0, 0}, {0.2, 0, 0.3}, {0, 0, 0.4}};
+    p.start.x = {{0, 0, 0}, {0.18, -0.39, 0}, {0.28, -0.79, 0.05}};
+    p.start.v = {{0, 0, 0}, {0.1, 0.05, 0.3}, {0.1, 0, 0.4}};
     add_spring(p, 0, 1, 0.4, 60, 0.02);
     add_spring(p, 1, 2, 0.4, 40, 0.02);
     pin(p, 0);
@@ -173,7 +176,8 @@ std::vector<Vec3> integrate(const Problem& p, const StepOptions& options, int st
     double whole = 0;
     for (int n = 0; n < steps; ++n) whole += pattern[static_cast<std::size_t>(n) % pattern.size()];
     for (int n = 0; n < steps; ++n) {
-        step(p.model, options, p.duration * pattern[static_cast<std::size_t>(n) % pattern.size()] / whole, state, ws);
+        step(p.model, options, p.duration * pattern[static_cast<std::size_t>(n) % pattern.size()] / whole,
+             state, ws);
     }
     return state.x;
 }
@@ -235,5 +239,63 @@ TEST_CASE("changing_steps_keep_the_order") {
     for (const Integrator integrator : {Integrator::bdf2, Integrator::adaptive_imex2}) {
         const double order = observed_order(p, integrator, exact, 800, {1.0, 1.6, 0.7, 0.7, 1.1});
         CHECK(order == Approx(2).margin(0.15));
+    }
+}
+
+// The smaller h, the fewer springs are implicit: what adaptive IMEX does to a step vanishes with h.
+TEST_CASE("split_step_tends_to_implicit_step") {
+    const Problem p = pendulum();
+    const auto apart = [&](int steps) {
+        return distance(integrate(p, options_of(Integrator::adaptive_imex), steps),
+                        integrate(p, options_of(Integrator::implicit), steps));
+    };
+    const double coarse = apart(200), fine = apart(800);
+    CHECK(coarse > 0);
+    CHECK(fine < coarse / 3);  // first order: a fourth, less what is left of the second
+}
+
+// Without a threshold nothing is explicit, and the adaptive schemes are the all-implicit ones, bit for bit.
+TEST_CASE("adaptive_schemes_with_threshold_zero_are_the_implicit_ones") {
+    const Problem p = trampoline();
+    const auto with = [&](Integrator integrator) {
+        StepOptions options = options_of(integrator);
+        options.threshold = 0;
+        return integrate(p, options, 25);
+    };
+    CHECK(with(Integrator::adaptive_imex) == with(Integrator::implicit));
+    CHECK(with(Integrator::adaptive_imex2) == with(Integrator::bdf2));
+}
+
+// Forward–backward Euler as Eq. (3) has it, written down once more.
+TEST_CASE("explicit_step_is_forward_backward_euler") {
+    const Problem p = trampoline();
+    const double h = p.duration / 100;
+    std::vector<Vec3> x = p.start.x, v = p.start.v;
+    for (int n = 0; n < 100; ++n) {
+        const std::vector<Vec3> a = accelerations(p, x, v);
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            v[k] += h * a[k];
+            x[k] += h * v[k];
+        }
+    }
+    // Sums in another order: a few units of rounding a step.
+    CHECK(distance(x, integrate(p, options_of(Integrator::explicit_), 100)) < 1e-13);
+}
+
+// Euler's implicit schemes damp; none of them may add energy to a free swing without input.
+TEST_CASE("implicit_schemes_add_no_energy") {
+    const Problem p = trampoline();
+    for (const Integrator integrator : {Integrator::implicit, Integrator::newton, Integrator::bdf2}) {
+        StepOptions options = options_of(integrator);
+        ClothState state = initial_state(p.start);
+        StepWorkspace ws;
+        double highest = -std::numeric_limits<double>::infinity(), first = 0;
+        for (int n = 0; n < 200; ++n) {
+            const StepReport report = step(p.model, options, 1.0 / 200, state, ws);
+            if (n == 0) first = report.kinetic + report.potential;
+            highest = std::max(highest, report.kinetic + report.potential);
+        }
+        INFO(scheme_of(integrator).name);
+        CHECK(highest - first < 1e-3 * std::abs(first));
     }
 }
