@@ -4,18 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "sim/pins.hpp"
+#include "sim/stage.hpp"
 
 namespace unravel {
 
 namespace {
-
-// Newton's method gives up after this many linearisations; a step that needs more is too large.
-constexpr int newton_limit = 30;
-// Halvings of a Newton step that would increase the residual.
-constexpr int newton_halvings = 4;
 
 // S and z of Eq. (9): pins, then contacts. Depth corrections go into `base`, friction into `friction`.
 void constrain(const ClothModel& model, const StepView& view, const ClothState& state, double h,
@@ -29,188 +24,12 @@ void constrain(const ClothModel& model, const StepView& view, const ClothState& 
     constrain_touches(model.solids, view, ws.touches, ws.constraints, ws.base, ws.friction);
 }
 
-// Right-hand side of the stage: friction, M (ṽ − v*) and h_f f*, gathered per particle in a fixed order.
-void add_forces(const ClothModel& model, StepWorkspace& ws) {
-    const Stage& stage = ws.stage;
-    ws.impulse.resize(model.size());
-    parallel_each(model.size(), [&](std::size_t p) {
-        Vec3 f = model.mass[p] * model.gravity;
-        const auto gather = [&](const Adjacency& adjacency, const std::vector<Vec3>& force) {
-            for (std::uint32_t k = adjacency.start[p]; k < adjacency.start[p + 1]; ++k) {
-                const auto [s, other] = adjacency.entries[k];
-                f += other > p ? force[s] : Vec3(-force[s]);
-            }
-        };
-        gather(model.spring_adjacency, ws.extension.force);
-        gather(model.bend_adjacency, ws.bend);
-        ws.impulse[p] = ws.friction[p] + stage.h_force * f + model.mass[p] * (stage.v[p] - stage.v_at[p]);
-    });
-}
-
-// Forces and Jacobians of the stage at (x*, v*) (Sec. 2) under the scheme's splitting (Sec. 3.5), for a step
-// of h seconds.
-void linearise(const ClothModel& model, const StepOptions& options, double h, StepWorkspace& ws) {
-    const Stage& stage = ws.stage;
-    const Splitting splitting = scheme_of(options.integrator).splitting(options.threshold);
-    extension_forces(model.springs, model.mass, stage.x_at, stage.v_at, h, splitting, options.activation_band,
-                     ws.extension, ws.taut);
-    limit_bend(model.bends, model.mass, h, ws.bend_limit);
-    ws.bend.resize(model.bends.size());
-    bend_forces(model.bends, ws.bend_limit, stage.x_at, ws.bend);
-    add_forces(model, ws);
-    ws.drift.resize(model.size());
-    parallel_each(model.size(),
-                  [&](std::size_t p) { ws.drift[p] = ws.base[p] + stage.h * stage.v_at[p] - stage.x_at[p]; });
-}
-
-void count_springs(const StepWorkspace& ws, StepReport& report) {
-    for (const SpringState s : ws.extension.state) {
-        report.implicit += s == SpringState::implicit;
-        report.explicit_ += s == SpringState::explicit_;
-        report.inactive += s == SpringState::inactive;
-    }
-}
-
-void count_solves(const std::vector<ComponentSolve>& solves, StepReport& report) {
-    for (const ComponentSolve& s : solves) {
-        report.cg_iterations += s.iterations;
-        report.cg_iterations_max = std::max(report.cg_iterations_max, s.iterations);
-        report.rvm += s.rvm;
-        report.converged = report.converged && s.converged;
-    }
-}
-
-// The oracle: the very same system, undecomposed.
-void compare_whole(const ClothModel& model, const StepOptions& options,
-                   std::span<const SpringFamily> families, const Load& load, std::span<const Vec3> guess,
-                   StepWorkspace& ws, StepReport& report) {
-    report.rvm_whole = report.rvm_whole.value_or(0);
-    if (!ws.coupled) return;
-    whole_cloth(model.size(), ws.whole);
-    assemble(families, load, ws.whole, ws.constraints, ws.stage.h, ws.whole_system);
-    solve(ws.whole_system, ws.whole, ws.constraints, guess, options.solve, ws.whole_solve, ws.whole_solves);
-    for (const ComponentSolve& s : ws.whole_solves) *report.rvm_whole += s.rvm;
-    for (std::size_t p = 0; p < model.size(); ++p) {
-        report.whole_difference = std::max(report.whole_difference, (ws.whole_solve.x[p] - ws.dv[p]).norm());
-    }
-}
-
-bool any_implicit(std::span<const SpringFamily> families) {
-    return std::any_of(families.begin(), families.end(), [](const SpringFamily& family) {
-        const std::vector<SpringState>& state = family.forces->state;
-        return std::find(state.begin(), state.end(), SpringState::implicit) != state.end();
-    });
-}
-
-// With no implicit spring A is M: nothing is coupled, nothing assembled, nothing iterated.
-void solve_uncoupled(const ClothModel& model, StepWorkspace& ws) {
-    lone_particles(model.size(), ws.constraints, ws.components);
-    ws.solves.clear();
-    parallel_each(model.size(), [&](std::size_t p) {
-        const Constraint* c = ws.constraints.find(static_cast<std::uint32_t>(p));
-        const Vec3 dv = ws.impulse[p] / model.mass[p];
-        ws.dv[p] = c ? Vec3(c->S * dv + (c->z - c->S * c->z)) : dv;
-    });
-}
-
-// The stage's linear system (Eq. 5): decomposed (Sec. 5), assembled, and solved under the constraints (Eq. 9)
-// one component at a time. Δv in ws.dv.
-void solve_stage(const ClothModel& model, const StepOptions& options, std::span<const Vec3> guess,
-                 StageTimer& timer, StepWorkspace& ws, StepReport& report) {
-    const std::size_t n = model.size();
-    const SpringFamily families[] = {{&model.springs, &model.spring_adjacency, &ws.extension}};
-    const Load load{model.mass, ws.impulse, ws.drift};
-    ws.dv.resize(n);
-    ws.coupled = any_implicit(families);
-    if (!ws.coupled) {
-        solve_uncoupled(model, ws);
-        timer.lap(report.times.solve);
-    } else {
-        if (options.decompose) {
-            find_components(n, families, ws.constraints, ws.parent, ws.components);
-        } else {
-            whole_cloth(n, ws.components);
-        }
-        timer.lap(report.times.graph);
-        assemble(families, load, ws.components, ws.constraints, ws.stage.h, ws.system);
-        timer.lap(report.times.assembly);
-        solve(ws.system, ws.components, ws.constraints, guess, options.solve, ws.solve, ws.solves);
-        parallel_each(n, [&](std::size_t row) { ws.dv[ws.components.order[row]] = ws.solve.x[row]; });
-        count_solves(ws.solves, report);
-        timer.lap(report.times.solve);
-    }
-    if (options.compare_whole) compare_whole(model, options, families, load, guess, ws, report);
-    timer.lap(report.times.compare);
-}
-
-// Where the particles will be if the step goes on like the last one, or as solved: x̃ + h̃ (v* + Δv).
-void predict(std::span<const Vec3> dv, StepWorkspace& ws) {
-    ws.end.resize(dv.size());
-    parallel_each(dv.size(),
-                  [&](std::size_t p) { ws.end[p] = ws.base[p] + ws.stage.h * (ws.stage.v_at[p] + dv[p]); });
-}
-
-// A second solve where the first over-extends springs that were slack: they join in from the start.
-void solve_again_where_taut(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
-                            StepWorkspace& ws, StepReport& report) {
-    predict(ws.dv, ws);
-    if (!mark_taut(model.springs, ws.end, ws.extension, ws.taut)) return;
-    linearise(model, options, h, ws);
-    timer.lap(report.times.forces);
-    ws.guess = ws.dv;
-    solve_stage(model, options, ws.guess, timer, ws, report);
-}
-
-// Sum over particles of |S y|²/m, of the stage's right-hand side y: what Newton's method makes small.
-double residual_of(const ClothModel& model, const StepWorkspace& ws) {
-    double sum = 0;
-    for (std::uint32_t p = 0; p < model.size(); ++p) {
-        const Constraint* c = ws.constraints.find(p);
-        sum += (c ? Vec3(c->S * ws.impulse[p]) : ws.impulse[p]).squaredNorm() / model.mass[p];
-    }
-    return sum;
-}
-
-// Σ m |y|²
-double kinetic_of(std::span<const double> mass, std::span<const Vec3> y) {
-    double sum = 0;
-    for (std::size_t p = 0; p < y.size(); ++p) sum += mass[p] * y[p].squaredNorm();
-    return sum;
-}
-
-// Newton's method (Eq. 4): the stage is linearised again at the end of the step that it gave, until what
-// is added no longer matters. The constraints stay as they are; after the first solve they are met, and only
-// S remains of them.
-void iterate(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
-             StepWorkspace& ws, StepReport& report) {
-    Stage& stage = ws.stage;
-    const auto advance = [&](double share) {
-        parallel_each(model.size(), [&](std::size_t p) {
-            stage.v_at[p] += share * ws.dv[p];
-            stage.x_at[p] = ws.base[p] + stage.h * stage.v_at[p];
-        });
-        ws.taut.clear();
-        linearise(model, options, h, ws);
-    };
-    const double whole = kinetic_of(model.mass, ws.dv), tolerance = options.solve.tolerance;
-    double before = std::numeric_limits<double>::infinity();
-    for (int k = 1;; ++k) {
-        advance(1.0);
-        ws.constraints.fulfil();
-        double residual = residual_of(model, ws), share = 1.0;
-        for (int halving = 0; residual > before && halving < newton_halvings; ++halving) {
-            share *= 0.5;
-            advance(-share);
-            residual = residual_of(model, ws);
-        }
-        before = residual;
-        timer.lap(report.times.forces);
-        ws.guess.assign(model.size(), Vec3::Zero());
-        solve_stage(model, options, ws.guess, timer, ws, report);
-        if (!(kinetic_of(model.mass, ws.dv) > tolerance * tolerance * whole)) return;
-        if (k == newton_limit) {
-            report.converged = false;
-            return;
+void count_springs(std::span<const SpringFamily> families, StepReport& report) {
+    for (const SpringFamily& family : families) {
+        for (const SpringState s : family.forces->state) {
+            report.implicit += s == SpringState::implicit;
+            report.explicit_ += s == SpringState::explicit_;
+            report.inactive += s == SpringState::inactive;
         }
     }
 }
@@ -295,12 +114,9 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
 
     // Forces at (x*, v*) (Sec. 2) and the adaptive IMEX splitting (Sec. 3.5)
     ws.taut.clear();
-    if (options.activation == Activation::predicted) {
-        predict(state.dv, ws);
-        mark_taut(model.springs, ws.end, {}, ws.taut);
-    }
-    linearise(model, options, h, ws);
-    timer.lap(report.times.forces);
+    if (options.activation == Activation::predicted) predict_taut(model, state.dv, ws);
+    explicit_forces(model, state.t, h, timer, ws, report);
+    linearise(model, options, h, timer, ws, report);
 
     // Independent components (Sec. 5), A Δv = b (Eq. 5) under Sx = Sb, (I − S)x = (I − S)z (Eq. 9)
     solve_stage(model, options, state.dv, timer, ws, report);
@@ -341,7 +157,9 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
     report.largest = ws.components.largest();
     for (const Constraint& c : ws.constraints.all()) ++(c.free == 0 ? report.constrained : report.partly);
     report.contacts = static_cast<std::uint32_t>(ws.touches.size());
-    count_springs(ws, report);
+    count_springs(families_of(model, ws), report);
+    report.self_contacts = static_cast<std::uint32_t>(ws.self.springs.size());
+    report.self_distance = ws.self.least_distance;
     if (options.measure) measure(model, ws.bend_limit, state, ws.measure, report);
     timer.lap(report.times.measure);
     return report;

@@ -10,6 +10,7 @@
 #include "sim/measure.hpp"
 #include "sim/model.hpp"
 #include "sim/report.hpp"
+#include "sim/self_collision.hpp"
 #include "sim/solve.hpp"
 #include "sim/state.hpp"
 #include "sim/system.hpp"
@@ -39,6 +40,8 @@ struct StepWorkspace {
     ExtensionForces extension;
     BendLimit bend_limit;
     std::vector<Vec3> bend;          ///< (bend springs) N
+    std::vector<Vec3> air;           ///< (cells) N; empty without wind
+    SelfCollisionWorkspace self;     ///< empty without self-collision
     std::vector<std::uint8_t> taut;  ///< (springs) 1: slack at x*, taut at the end; or empty
     std::vector<Vec3> base, friction, impulse, drift, end, guess;  ///< (particles)
     std::vector<Vec3> reaction;                                    ///< (constraints)
