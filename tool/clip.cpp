@@ -119,6 +119,9 @@ public:
             } else if (options_.keep_pictures) {
                 write_png(file, passage.pictures[s]);
             }
+            if (options_.picture) {
+                options_.picture(options_.styles[s], passage.record.frame, passage.pictures[s]);
+            }
         });
         double spent = 0;
         timer.lap(spent);

@@ -14,6 +14,7 @@
 #include "tool/options.hpp"
 #include "tool/progress.hpp"
 #include "tool/render_options.hpp"
+#include "tool/report/page.hpp"
 #include "tool/run_json.hpp"
 #include "tool/run_source.hpp"
 
@@ -46,7 +47,7 @@ void print_summary(const Options& options, const RunFolder& folder, const nlohma
         for (const auto& video : json["videos"])
             fmt::print("  {}\n", (folder.root / video.get<std::string>()).string());
     }
-    fmt::print("  {}\n", folder.stats().string());
+    fmt::print("  {}\n  {}\n", folder.stats().string(), folder.report().string());
 }
 
 int simulate_clip(const Options& options, bool pictures) {
@@ -71,6 +72,18 @@ int simulate_clip(const Options& options, bool pictures) {
         cached_frames(folder, scene, hash, simulation.model.size(), simulation.model.springs.size());
     clip_options.reuse_pictures = existing == Existing::resume;
     RunSource source(scene, folder, hash, simulation, cached, threads);
+    PageRecorder recorder(simulation.model);
+    Previews previews = previews_of(scene, clip_options);
+    if (pictures) {
+        clip_options.picture = [&](DrawStyle style, int frame, const Image& picture) {
+            previews.add(style, frame, picture);
+        };
+    }
+    const auto next = [&] {
+        std::optional<FrameRecord> record = source.next();
+        if (record) recorder.see(*record);
+        return record;
+    };
 
     Progress progress(scene.name, scene.clip.frames(), options.quiet);
     const auto done = [&](int frame) { progress.show(frame + 1, std::min(cached, frame + 1)); };
@@ -84,17 +97,17 @@ int simulate_clip(const Options& options, bool pictures) {
         json["wall_seconds"] =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         write_whole_file(folder.run_json(), json.dump(2) + "\n");
+        write_whole_file(folder.report(), report_page(scene, simulation.model, folder, recorder.frames(),
+                                                      source.reports(), previews, page_facts(json)));
         print_summary(options, folder, json);
     };
     try {
         if (pictures) {
             Placement placement;
             build_model(scene, placement);
-            report = make_clip(
-                scene, simulation.model, placement, folder, clip_options, [&] { return source.next(); },
-                done);
+            report = make_clip(scene, simulation.model, placement, folder, clip_options, next, done);
         } else {
-            while (const std::optional<FrameRecord> record = source.next()) done(record->frame);
+            while (const std::optional<FrameRecord> record = next()) done(record->frame);
         }
     } catch (const SimulationError&) {
         conclude("failed");
