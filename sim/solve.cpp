@@ -9,6 +9,10 @@ namespace unravel {
 
 namespace {
 
+bool is_swept(Preconditioner kind) {
+    return kind == Preconditioner::ssor || kind == Preconditioner::ic0;
+}
+
 // The rows of one component and the vectors over them.
 struct Rows {
     const System& A;
@@ -60,15 +64,23 @@ ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
     const System& A = rows.A;
     std::vector<Vec3>&x = rows.ws.x, &r = rows.ws.r, &p = rows.ws.p, &q = rows.ws.q;
     const std::vector<Mat3>& P = rows.ws.preconditioner.inverse;
+    const bool swept = is_swept(options.preconditioner);
     ComponentSolve result;
 
     const double target = options.tolerance * options.tolerance * rows.measure(A.b);
     rows.each([&](std::uint32_t row) { r[row] = A.b[row] - row_times(A, row, x); });
     result.rvm = rows.count();
-    double rho = rows.sum([&](std::uint32_t row) {
-        p[row] = P[row] * r[row];
-        return r[row].dot(p[row]);
-    });
+    // q = P⁻¹ r; returns r·q
+    const auto precondition = [&] {
+        if (swept) {
+            sweep(rows.ws.sweeps, rows.begin, rows.end, r, q);
+        } else {
+            rows.each([&](std::uint32_t row) { q[row] = P[row] * r[row]; });
+        }
+        return rows.sum([&](std::uint32_t row) { return r[row].dot(q[row]); });
+    };
+    double rho = precondition();
+    rows.each([&](std::uint32_t row) { p[row] = q[row]; });
     double residual = rows.separate_stopping ? rows.measure(r) : rho;
 
     while (residual > target && result.iterations < static_cast<std::uint32_t>(options.max_iterations)) {
@@ -81,9 +93,13 @@ ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
         // Zero curvature: p is zero to rounding, nothing further can be gained.
         if (!(curvature > 0)) break;
         const double alpha = rho / curvature;
-        const double rho_next = rows.sum([&](std::uint32_t row) {
+        const auto advance = [&](std::uint32_t row) {
             x[row] += alpha * p[row];
             r[row] -= alpha * q[row];
+        };
+        if (swept) rows.each(advance);
+        const double rho_next = swept ? precondition() : rows.sum([&](std::uint32_t row) {
+            advance(row);
             q[row] = P[row] * r[row];
             return r[row].dot(q[row]);
         });
@@ -111,6 +127,7 @@ void solve(const System& A, const Components& components, const Constraints& con
     build_preconditioner(options.preconditioner, A, components, constraints, ws.preconditioner);
     if (separate)
         build_preconditioner(Preconditioner::constrained_block, A, components, constraints, ws.stopping);
+    if (is_swept(options.preconditioner)) build_sweeps(A, components, constraints, ws.stopping, ws.sweeps);
 
     out.assign(components.count(), {});
     const auto component_size_one = [&](std::uint32_t row) {
@@ -131,6 +148,8 @@ void solve(const System& A, const Components& components, const Constraints& con
     ws.partials.resize(chunk_count(n) + large_count);
     const auto run = [&](std::size_t c, double* partials) {
         const Rows rows{A, ws, components.start[c], components.start[c + 1], partials, separate};
+        if (options.preconditioner == Preconditioner::ic0 && rows.count() > 1)
+            factorise(A, components, constraints, rows.begin, rows.end, ws.sweeps);
         out[c] = rows.count() == 1
                      ? solve_single(rows, (separate ? ws.stopping : ws.preconditioner).inverse[rows.begin])
                      : solve_component(rows, options);

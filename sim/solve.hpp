@@ -7,6 +7,7 @@
 #include "sim/components.hpp"
 #include "sim/constraints.hpp"
 #include "sim/preconditioner.hpp"
+#include "sim/sweep_preconditioner.hpp"
 #include "sim/system.hpp"
 
 namespace unravel {
@@ -29,6 +30,7 @@ struct ComponentSolve {
 /// Memory of the solver, kept between steps.
 struct SolveWorkspace {
     BlockPreconditioner preconditioner, stopping;
+    SweepPreconditioner sweeps;    ///< for ssor and ic0 only
     std::vector<Vec3> x, r, p, q;  ///< (rows)
     std::vector<double> partials;  ///< (chunks of rows)
 };

@@ -115,6 +115,23 @@ int main(int argc, char** argv) {
     render->add_option("--set", options.overrides, "key=value of [camera], [look] or clip.size")
         ->allow_extra_args(false);
     add_picture_options(*render, options);
+    CLI::App* accuracy = takes(
+        command("accuracy", "what accuracy costs in time: integrators, steps, thresholds and tolerances",
+                command_accuracy),
+        "SCENE", "scene file");
+    accuracy->add_option("-o", options.output, "folder of the study (default: output/<scene name>_accuracy)");
+    accuracy->add_option("--set", options.overrides, "key=value: another value for a key of the scene")
+        ->allow_extra_args(false);
+    accuracy->add_option("--budget", options.budget, "minutes that the study may take")
+        ->check(CLI::Range(0.1, 1e5))
+        ->capture_default_str();
+    accuracy->add_option("--error", options.error, "to be borne, as a share of the cloth's diagonal")
+        ->check(CLI::Range(1e-9, 1.0))
+        ->capture_default_str();
+    accuracy
+        ->add_option("--threads", options.threads, "threads of the simulation (default: one per processor)")
+        ->check(CLI::Range(1, 1024));
+    accuracy->add_flag("--force", options.force, "forget the points of an earlier study in the folder");
     CLI::App* check = takes(command("check", "what is wrong with a scene, or what would run", command_check),
                             "SCENE", "scene file");
     check

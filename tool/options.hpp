@@ -34,12 +34,15 @@ struct Options {
     int crf = -1;
     int samples = 4, supersample = 1;
     bool pictures = true;
+    double budget = 10;   ///< --budget, minutes
+    double error = 1e-3;  ///< --error, of the cloth's diagonal
 };
 
 // The commands. Each returns an exit code and throws what main() turns into one.
 int command_run(const Options& options);
 int command_simulate(const Options& options);
 int command_render(const Options& options);
+int command_accuracy(const Options& options);
 int command_check(const Options& options);
 int command_doctor(const Options& options);
 

@@ -1,0 +1,143 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <string_view>
+
+#include "sim/integrators/scheme.hpp"
+#include "tool/studies/accuracy.hpp"
+
+namespace unravel {
+
+namespace {
+
+constexpr Integrator integrators[] = {
+    Integrator::explicit_,      Integrator::implicit, Integrator::adaptive_imex, Integrator::bdf2,
+    Integrator::adaptive_imex2, Integrator::imex,     Integrator::newton};
+constexpr const char* activations[] = {"start", "predicted", "resolve"};
+
+const AccuracySetting common;
+
+// Steps a frame: a factor of two apart, and an eighth of the reference's at most.
+std::vector<int> ladder(int coarsest, int finest, int reference) {
+    std::vector<int> steps;
+    for (int k = coarsest; k <= std::min(finest, reference / 8); k *= 2) steps.push_back(k);
+    return steps;
+}
+
+void add(std::vector<AccuracySetting>& grid, AccuracySetting setting, const std::vector<int>& steps) {
+    for (const int k : steps) {
+        setting.steps_per_frame = k;
+        if (std::find(grid.begin(), grid.end(), setting) == grid.end()) grid.push_back(setting);
+    }
+}
+
+constexpr std::string_view header =
+    "integrator,steps_per_frame,threshold,tolerance,activation,band,broke,error,max_strain,lowest,energy,"
+    "steps,rvm,"
+    "median_seconds,fastest_seconds,slowest_seconds,runs,seconds";
+
+std::vector<std::string_view> split(std::string_view line, char at) {
+    std::vector<std::string_view> parts;
+    for (std::size_t end; (end = line.find(at)) != line.npos; line.remove_prefix(end + 1))
+        parts.push_back(line.substr(0, end));
+    parts.push_back(line);
+    return parts;
+}
+
+template <typename T>
+bool parse(std::string_view text, T& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size();
+}
+
+bool parse_point(const std::vector<std::string_view>& cells, AccuracyPoint& p) {
+    if (cells.size() != split(header, ',').size()) return false;
+    AccuracySetting& s = p.setting;
+    const auto* scheme = std::find_if(std::begin(integrators), std::end(integrators),
+                                      [&](Integrator i) { return cells[0] == scheme_of(i).name; });
+    const auto* activation = std::find(std::begin(activations), std::end(activations), cells[4]);
+    int broke = 0;
+    if (scheme == std::end(integrators) || activation == std::end(activations)) return false;
+    s.integrator = *scheme;
+    s.activation = static_cast<Activation>(activation - std::begin(activations));
+    bool good = parse(cells[1], s.steps_per_frame) && parse(cells[2], s.threshold) &&
+                parse(cells[3], s.tolerance) && parse(cells[5], s.band) && parse(cells[6], broke) &&
+                parse(cells[7], p.error) && parse(cells[8], p.max_strain) && parse(cells[9], p.lowest) &&
+                parse(cells[10], p.energy) && parse(cells[11], p.steps) && parse(cells[12], p.rvm);
+    p.broke = broke != 0;
+    for (const std::string_view text : split(cells.back(), ' ')) {
+        p.seconds.push_back(0);
+        good = good && parse(text, p.seconds.back());
+    }
+    return good;
+}
+
+}  // namespace
+
+std::string AccuracySetting::method() const {
+    std::string text = scheme_of(integrator).name;
+    if (threshold != common.threshold) text += fmt::format(", threshold {}", threshold);
+    if (tolerance != common.tolerance) text += fmt::format(", tolerance {:.0e}", tolerance);
+    if (activation != common.activation)
+        text += fmt::format(", {} activation", activations[static_cast<int>(activation)]);
+    if (band != common.band) text += fmt::format(", band {}", band);
+    return text;
+}
+
+bool AccuracySetting::plain() const {
+    return threshold == common.threshold && tolerance == common.tolerance &&
+           activation == common.activation && band == common.band;
+}
+
+std::vector<AccuracySetting> accuracy_grid(const AccuracyReference& reference) {
+    const int finest = reference.first.steps_per_frame;
+    std::vector<AccuracySetting> grid;
+    for (const Integrator integrator : integrators) {
+        const bool is_explicit = integrator == Integrator::explicit_;
+        add(grid, {integrator, 1, common.threshold, common.tolerance, common.activation, common.band},
+            is_explicit ? ladder(4, 256, finest) : ladder(1, 64, finest));
+    }
+    const std::vector<int> few = ladder(2, 16, finest), wide = ladder(4, 64, finest);
+    for (const Activation activation : {Activation::predicted, Activation::resolve})
+        add(grid, {Integrator::adaptive_imex, 1, common.threshold, common.tolerance, activation, 0}, few);
+    add(grid, {Integrator::adaptive_imex, 1, common.threshold, common.tolerance, Activation::start, 0.02},
+        few);
+    for (const Integrator adaptive : {Integrator::adaptive_imex, Integrator::adaptive_imex2}) {
+        for (const double threshold : {0.05, 0.5})
+            add(grid, {adaptive, 1, threshold, common.tolerance, common.activation, common.band}, wide);
+        for (const double tolerance : {1e-1, 1e-2, 1e-5})
+            add(grid, {adaptive, 1, common.threshold, tolerance, common.activation, common.band}, {4, 16});
+    }
+    return grid;
+}
+
+std::string accuracy_csv(const std::vector<AccuracyPoint>& points) {
+    std::string csv = std::string(header) + "\n";
+    for (const AccuracyPoint& p : points) {
+        const AccuracySetting& s = p.setting;
+        csv += fmt::format("{},{},{},{},{},{},{:d},{},{},{},{},{},{},{:.6f},{:.6f},{:.6f},{},",
+                           scheme_of(s.integrator).name, s.steps_per_frame, s.threshold, s.tolerance,
+                           activations[static_cast<int>(s.activation)], s.band, p.broke, p.error,
+                           p.max_strain, p.lowest, p.energy, p.steps, p.rvm, p.median(), p.fastest(),
+                           p.slowest(), p.seconds.size());
+        for (std::size_t k = 0; k < p.seconds.size(); ++k)
+            csv += fmt::format("{}{:.6f}", k ? " " : "", p.seconds[k]);
+        csv += '\n';
+    }
+    return csv;
+}
+
+std::vector<AccuracyPoint> read_accuracy_csv(const std::string& csv) {
+    std::vector<AccuracyPoint> points;
+    const std::vector<std::string_view> lines = split(csv, '\n');
+    if (lines.front() != header) return points;
+    for (std::size_t k = 1; k < lines.size(); ++k) {
+        AccuracyPoint point;
+        if (parse_point(split(lines[k], ','), point)) points.push_back(std::move(point));
+    }
+    return points;
+}
+
+}  // namespace unravel

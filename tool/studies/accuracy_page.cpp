@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "tool/studies/accuracy_verdict.hpp"
+
+namespace unravel {
+
+namespace {
+
+std::string escaped(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '<') {
+            out += "&lt;";
+        } else if (c == '&') {
+            out += "&amp;";
+        } else {
+            out += c;
+        }
+    }
+    return out;
+}
+
+// The document within another: without its XML declaration.
+std::string inlined(const std::string& svg) {
+    const std::size_t begin = svg.find("<svg");
+    return begin == svg.npos ? svg : svg.substr(begin);
+}
+
+PlotPoint plotted(const AccuracyPoint& p, double seconds_simulated, CostAxis axis) {
+    PlotPoint point;
+    point.y = p.broke ? std::numeric_limits<double>::infinity() : p.error;
+    if (axis == CostAxis::rvm) {
+        point.x = static_cast<double>(p.rvm) / seconds_simulated;
+        return point;
+    }
+    point.x = p.median() / seconds_simulated;
+    if (p.seconds.size() > 1) {
+        point.left = p.fastest() / seconds_simulated;
+        point.right = p.slowest() / seconds_simulated;
+    }
+    return point;
+}
+
+}  // namespace
+
+Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyReference& reference,
+                   const std::string& scene, double seconds_simulated, CostAxis axis) {
+    Plot plot;
+    plot.title = fmt::format("What accuracy costs: {}", scene);
+    plot.x.label = axis == CostAxis::time ? "computing time for a second simulated [s]"
+                                          : "row-vector multiplies for a second simulated";
+    plot.y.label = "error: RMS distance from the reference / diagonal";
+    plot.x.log = plot.y.log = true;
+    plot.width = 900;
+    plot.height = 600;
+    for (const AccuracyCurve& curve : curves_of(points, reference.floor)) {
+        // Explicit steps multiply no rows.
+        if (axis == CostAxis::rvm && curve.points.front()->setting.integrator == Integrator::explicit_)
+            continue;
+        PlotSeries series;
+        series.label = curve.method;
+        series.style =
+            curve.points.front()->setting.plain() ? SeriesStyle::line_and_points : SeriesStyle::points;
+        if (curve.order) series.label += fmt::format(" (order {:.1f})", *curve.order);
+        for (const AccuracyPoint* p : curve.points)
+            series.points.push_back(plotted(*p, seconds_simulated, axis));
+        plot.series.push_back(std::move(series));
+    }
+    if (axis == CostAxis::time) {
+        PlotSeries front{"Pareto front", {}, SeriesStyle::line, true, -1};
+        for (const AccuracyPoint* p : pareto_front(points))
+            front.points.push_back({p->median() / seconds_simulated, p->error});
+        plot.series.push_back(std::move(front));
+    }
+    plot.guides.push_back({reference.floor, true, "floor: the two references differ by this"});
+    return plot;
+}
+
+std::string accuracy_page(const std::vector<AccuracyPoint>& points, const AccuracyReference& reference,
+                          const std::string& scene, double seconds_simulated, int fps, double error) {
+    return fmt::format(
+        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Accuracy of {0}</title>\n"
+        "<style>body{{font:15px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}}"
+        "svg{{max-width:100%;height:auto}}pre{{overflow-x:auto;font-size:12px}}</style>\n"
+        "<h1>What accuracy costs: {0}</h1>\n<p><strong>{1}</strong></p>\n{2}\n"
+        "<p>Each point is one run of the scene's first {3:.2f} s. Its error is the distance of its particles "
+        "from a reference at every frame, RMS over particles and frames, as a share of the cloth's diagonal; "
+        "its cost is the median time of the steps over interleaved runs, with the fastest and slowest as "
+        "bars. "
+        "Crosses at the upper edge are runs that blew up. The reference is {4} at steps of 1/{5} s and a "
+        "tolerance of {6:.0e}; {7} at steps of 1/{8} s differs from it by {9:.2e}: nothing below that line "
+        "can "
+        "be told apart. Lines hold a threshold of 0.2 and a tolerance of 1e-3; points without a line vary "
+        "one "
+        "of them, or how slack springs are activated.</p>\n{10}\n<pre>{11}</pre></html>\n",
+        escaped(scene), escaped(recommendation(points, error, seconds_simulated, fps)),
+        inlined(plot_svg(accuracy_plot(points, reference, scene, seconds_simulated, CostAxis::time))),
+        seconds_simulated, reference.first.method(), reference.first.steps_per_frame * fps,
+        reference.first.tolerance, reference.second.method(), reference.second.steps_per_frame * fps,
+        reference.floor,
+        inlined(plot_svg(accuracy_plot(points, reference, scene, seconds_simulated, CostAxis::rvm))),
+        escaped(accuracy_table(points, reference, error, fps)));
+}
+
+}  // namespace unravel

@@ -1,0 +1,193 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include "base/whole_file.hpp"
+#include "sim/simulate.hpp"
+#include "tool/studies/accuracy.hpp"
+
+namespace unravel {
+
+namespace {
+
+// Particles farther out than this many diagonals say that a run has blown up, long before it overflows.
+constexpr double far_out = 100;
+// A run farther than this many diagonals from the reference is no answer to anything.
+constexpr double no_answer = 1;
+
+double median_of(std::vector<double> values) {
+    if (values.empty()) return 0;
+    std::sort(values.begin(), values.end());
+    const std::size_t half = values.size() / 2;
+    return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+bool in_sight(const std::vector<Vec3>& x, double limit) {
+    return std::all_of(x.begin(), x.end(), [&](const Vec3& p) { return p.squaredNorm() < limit * limit; });
+}
+
+// Frames until the two trajectories part.
+int comparable_frames(const Trajectory& a, const Trajectory& b, double diagonal, int least) {
+    int frames = 0;
+    for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+        if (static_cast<int>(k) >= least && distance({a[k]}, {b[k]}, diagonal) > parted) break;
+        frames = static_cast<int>(k) + 1;
+    }
+    return frames;
+}
+
+// What precedes the positions in a reference's file.
+struct ReferenceHeader {
+    char kind[8] = {'u', 'n', 'r', 'e', 'f', '0', '0', '1'};
+    std::int32_t steps_per_frame = 0, frames = 0;
+    std::uint64_t particles = 0;
+    double floor = 0;
+};
+constexpr std::size_t largest_reference = std::size_t{4} << 30;
+
+AccuracySetting reference_setting(Integrator integrator, int steps_per_frame) {
+    return {integrator, steps_per_frame, 0.2, 1e-9, Activation::start, 0};
+}
+
+}  // namespace
+
+double AccuracyPoint::median() const {
+    return median_of(seconds);
+}
+double AccuracyPoint::fastest() const {
+    return seconds.empty() ? 0 : *std::min_element(seconds.begin(), seconds.end());
+}
+double AccuracyPoint::slowest() const {
+    return seconds.empty() ? 0 : *std::max_element(seconds.begin(), seconds.end());
+}
+
+double diagonal_of(const Scene& scene) {
+    double diagonal = 0;
+    for (const Cloth& cloth : scene.cloths)
+        diagonal = std::max(diagonal, std::hypot(cloth.size[0], cloth.size[1]));
+    return diagonal;
+}
+
+double distance(const Trajectory& a, const Trajectory& b, double diagonal) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+        for (std::size_t p = 0; p < a[k].size(); ++p) sum += (a[k][p] - b[k][p]).squaredNorm();
+        count += a[k].size();
+    }
+    return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count)) / diagonal;
+}
+
+AccuracyRun run_setting(const Scene& scene, const AccuracySetting& setting, int frames,
+                        const std::function<bool()>& keep_on) {
+    Scene variant = scene;
+    variant.solver.integrator = setting.integrator;
+    variant.solver.step = 1.0 / (scene.clip.fps * setting.steps_per_frame);
+    variant.solver.threshold = setting.threshold;
+    variant.solver.tolerance = setting.tolerance;
+    variant.solver.activation = setting.activation;
+    variant.solver.activation_band = setting.band;
+    variant.solver.adaptive.reset();
+    Simulation simulation = start_simulation(variant);
+    const double limit = far_out * diagonal_of(scene);
+
+    AccuracyRun run;
+    run.point.setting = setting;
+    double seconds = 0;
+    try {
+        for (int frame = 0; frame < frames; ++frame) {
+            if (!keep_on()) {
+                run.stopped = true;
+                return run;
+            }
+            for (int k = 0; k < setting.steps_per_frame; ++k) {
+                // Strain and energy are looked at where a frame ends: more often they would cost more than
+                // a small step.
+                simulation.options.measure = k + 1 == setting.steps_per_frame;
+                const StepReport report = step(simulation.model, simulation.options, variant.solver.step,
+                                               simulation.state, simulation.ws);
+                seconds += report.times.step();
+                run.point.rvm += report.rvm;
+                ++run.point.steps;
+                if (!simulation.options.measure) continue;
+                run.point.max_strain = std::max(run.point.max_strain, report.max_strain);
+                run.point.lowest = report.lowest;
+                run.point.energy = report.kinetic + report.potential;
+            }
+            if (!in_sight(simulation.state.x, limit)) {
+                run.point.broke = true;
+                break;
+            }
+            run.trajectory.push_back(simulation.state.x);
+        }
+    } catch (const SimulationError&) {
+        run.point.broke = true;
+    }
+    run.point.seconds = {seconds};
+    return run;
+}
+
+AccuracyReference make_reference(const Scene& scene, double seconds, const std::function<bool()>& keep_on) {
+    AccuracyReference reference;
+    const int all = scene.clip.frames() - 1;
+    // An eighth of a second by moderate steps tells what a step costs.
+    const int probe_frames = std::max(1, scene.clip.fps / 8);
+    const AccuracyRun probe = run_setting(scene, reference_setting(Integrator::adaptive_imex2, 64),
+                                          std::min(all, probe_frames), keep_on);
+    const double per_step =
+        probe.point.median() / std::max<double>(1, static_cast<double>(probe.point.steps));
+    const int wanted = std::min(all, std::max(1, scene.clip.fps / 2));
+    int steps = 256;
+    while (steps < 4096 && 2 * (2.0 * steps) * wanted * per_step < seconds) steps *= 2;
+
+    reference.first = reference_setting(Integrator::adaptive_imex2, steps);
+    reference.second = reference_setting(Integrator::explicit_, steps);
+    AccuracyRun first = run_setting(scene, reference.first, wanted, keep_on);
+    const AccuracyRun other = run_setting(scene, reference.second, wanted, keep_on);
+    const double diagonal = diagonal_of(scene);
+    const int least = static_cast<int>(std::ceil(least_window * scene.clip.fps));
+    reference.frames = comparable_frames(first.trajectory, other.trajectory, diagonal, least);
+    reference.trajectory = std::move(first.trajectory);
+    reference.trajectory.resize(static_cast<std::size_t>(reference.frames));
+    reference.floor = distance(reference.trajectory, other.trajectory, diagonal);
+    return reference;
+}
+
+std::string reference_bytes(const AccuracyReference& reference) {
+    ReferenceHeader header;
+    header.steps_per_frame = reference.first.steps_per_frame;
+    header.frames = reference.frames;
+    header.particles = reference.trajectory.empty() ? 0 : reference.trajectory.front().size();
+    header.floor = reference.floor;
+    std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
+    for (const std::vector<Vec3>& x : reference.trajectory)
+        bytes.append(reinterpret_cast<const char*>(x.data()), x.size() * sizeof(Vec3));
+    return bytes;
+}
+
+AccuracyReference read_reference(const std::filesystem::path& file, std::size_t particles) {
+    const std::string bytes = read_whole_text(file, largest_reference);
+    ReferenceHeader header;
+    const ReferenceHeader expected;
+    if (bytes.size() >= sizeof header) std::memcpy(&header, bytes.data(), sizeof header);
+    const std::size_t frame_bytes = particles * sizeof(Vec3);
+    if (bytes.size() < sizeof header || std::memcmp(header.kind, expected.kind, sizeof header.kind) != 0 ||
+        header.particles != particles || header.frames < 0 || header.steps_per_frame < 1 ||
+        bytes.size() != sizeof header + static_cast<std::size_t>(header.frames) * frame_bytes) {
+        throw InputError(file, "is no reference of this scene; --force makes a new one");
+    }
+    AccuracyReference reference;
+    reference.first = reference_setting(Integrator::adaptive_imex2, header.steps_per_frame);
+    reference.second = reference_setting(Integrator::explicit_, header.steps_per_frame);
+    reference.frames = header.frames;
+    reference.floor = header.floor;
+    for (int k = 0; k < header.frames; ++k) {
+        reference.trajectory.emplace_back(particles);
+        std::memcpy(static_cast<void*>(reference.trajectory.back().data()),
+                    bytes.data() + sizeof header + static_cast<std::size_t>(k) * frame_bytes, frame_bytes);
+    }
+    return reference;
+}
+
+}  // namespace unravel
