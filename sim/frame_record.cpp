@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "records are little-endian");
 
-constexpr std::string_view magic = "UNRAVEL\x01";
+constexpr std::string_view magic = "UNRAVEL\x02";
 // Far above what four million particles need; a damaged length must not become an allocation.
 constexpr std::size_t largest_file = std::size_t{4} << 30;
 
@@ -25,6 +25,7 @@ void members(Archive& archive, Record& r) {
     archive(r.state.step);
     archive(r.state.t);
     archive(r.state.h_previous);
+    archive(r.state.halvings);
     archive(r.state.x);
     archive(r.state.v);
     archive(r.state.dv);
@@ -60,6 +61,8 @@ void members(Archive& archive, Record& r) {
         archive(s.whole_difference);
         archive(s.converged);
         archive(s.contacts);
+        archive(s.self_contacts);
+        archive(s.self_distance);
         archive(s.max_strain);
         archive(s.p99_strain);
         archive(s.lowest);

@@ -158,6 +158,34 @@ void add_pins(const Grid& g, const Placement& placement, std::vector<PinnedGroup
     }
 }
 
+void add_air_cells(const Grid& g, AirCells& air) {
+    for (int j = 0; j < g.patch.cells_v(); ++j) {
+        for (int i = 0; i < g.patch.cells_u(); ++i) {
+            air.corners.push_back(
+                {g.patch.at(i, j), g.patch.at(i, j + 1), g.patch.at(i + 1, j + 1), g.patch.at(i + 1, j)});
+        }
+    }
+}
+
+// What the scene leaves open: near enough that no particle slips between two others, as stiff as the stiffest
+// cloth, and damped to a fifth of critical.
+SelfCollision fitting(SelfCollision settings, std::span<const Grid> grids, const ClothModel& model) {
+    double spacing = infinity;
+    for (const Grid& g : grids) spacing = std::min({spacing, g.a, g.b});
+    if (settings.thickness == 0) settings.thickness = 0.75 * spacing;
+    const ExtensionSprings& springs = model.springs;
+    if (settings.stiffness == 0 && springs.stretch_count > 0) {
+        settings.stiffness =
+            *std::max_element(springs.stiffness.begin(),
+                              springs.stiffness.begin() + static_cast<std::ptrdiff_t>(springs.stretch_count));
+    }
+    if (settings.damping == 0) {
+        const double lightest = *std::min_element(model.mass.begin(), model.mass.end());
+        settings.damping = 0.2 * 2.0 * std::sqrt(settings.stiffness * lightest);
+    }
+    return settings;
+}
+
 }  // namespace
 
 ClothModel build_model(const Scene& scene, Placement& placement) {
@@ -185,6 +213,12 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
     for (const Grid& g : grids) add_bends(g, model.bends);
     for (const Grid& g : grids) place(g, placement);
     for (const Grid& g : grids) add_pins(g, placement, model.pins);
+    if (scene.wind) {
+        model.wind = scene.wind;
+        for (const Grid& g : grids) add_air_cells(g, model.air);
+        connect_cells(model.size(), model.air);
+    }
+    if (scene.self_collision) model.self_collision = fitting(*scene.self_collision, grids, model);
     model.spring_adjacency = adjacency_of(model.size(), model.springs.i, model.springs.j);
     model.bend_adjacency = adjacency_of(model.size(), model.bends.i, model.bends.j);
     return model;

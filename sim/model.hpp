@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sim/forces/air.hpp"
 #include "sim/forces/bend.hpp"
 #include "sim/forces/extension.hpp"
 #include "sim/math.hpp"

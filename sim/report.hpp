@@ -8,10 +8,11 @@ namespace unravel {
 
 /// Seconds spent in each stage of a step.
 struct StageTimes {
-    double contact = 0, forces = 0, graph = 0, assembly = 0, solve = 0, advance = 0, measure = 0, compare = 0;
+    double contact = 0, collision = 0, air = 0, forces = 0, graph = 0, assembly = 0, solve = 0, advance = 0;
+    double measure = 0, compare = 0;
     /// The step itself: without measuring it, and without the whole-system solve that it may be compared
     /// with.
-    double step() const { return contact + forces + graph + assembly + solve + advance; }
+    double step() const { return contact + collision + air + forces + graph + assembly + solve + advance; }
 };
 
 /// What one step was, in the quantities that stats.csv lists (one row per step).
@@ -31,6 +32,9 @@ struct StepReport {
     double whole_difference = 0;             ///< largest difference of the two solutions [m/s]
     bool converged = true;                   ///< every component reached the tolerance
     std::uint32_t contacts = 0;
+    std::uint32_t self_contacts =
+        0;  ///< temporary springs of self-collision; they count as implicit or explicit too
+    double self_distance = 0;  ///< m, least between particles that may collide, at most the thickness
     double max_strain = 0, p99_strain = 0;  ///< of stretch springs, (l − L)/L
     double lowest = 0;                      ///< m, lowest particle's y
     double kinetic = 0, potential = 0;      ///< J; gravity's zero is at y = 0

@@ -24,6 +24,7 @@ struct ClothState {
     std::vector<Vec3> x, v;         ///< (particles) [m], [m/s]
     std::vector<Vec3> dv;           ///< (particles) Δv of the last step, the next solve's first guess [m/s]
     std::vector<Contact> contacts;  ///< sorted by particle, then solid; empty without solids
+    std::uint8_t halvings = 0;      ///< adaptive step: how often the scene's step is halved at present
     double h_previous = 0;  ///< s, size of the last step; 0 at the start (multistep schemes then start up)
     std::vector<Vec3> x_previous, v_previous;  ///< (particles) one step ago; empty for one-step schemes
     std::vector<Vec3>

@@ -21,14 +21,16 @@ struct TimeColumn {
     const char* name;
     double StageTimes::*slot;
 };
-constexpr std::array<TimeColumn, 8> time_columns{{{"ms_contact", &StageTimes::contact},
-                                                  {"ms_forces", &StageTimes::forces},
-                                                  {"ms_graph", &StageTimes::graph},
-                                                  {"ms_assembly", &StageTimes::assembly},
-                                                  {"ms_solve", &StageTimes::solve},
-                                                  {"ms_advance", &StageTimes::advance},
-                                                  {"ms_measure", &StageTimes::measure},
-                                                  {"ms_compare", &StageTimes::compare}}};
+constexpr std::array<TimeColumn, 10> time_columns{{{"ms_contact", &StageTimes::contact},
+                                                   {"ms_collision", &StageTimes::collision},
+                                                   {"ms_air", &StageTimes::air},
+                                                   {"ms_forces", &StageTimes::forces},
+                                                   {"ms_graph", &StageTimes::graph},
+                                                   {"ms_assembly", &StageTimes::assembly},
+                                                   {"ms_solve", &StageTimes::solve},
+                                                   {"ms_advance", &StageTimes::advance},
+                                                   {"ms_measure", &StageTimes::measure},
+                                                   {"ms_compare", &StageTimes::compare}}};
 
 template <std::size_t K>
 std::string time_text(R r) {
@@ -59,6 +61,11 @@ constexpr StatsColumn columns[] = {
     {"converged", "1 if every component reached the tolerance",
      [](R r) { return fmt::format("{:d}", r.converged); }},
     {"contacts", "particle-solid contacts", [](R r) { return fmt::format("{}", r.contacts); }},
+    {"self_contacts", "temporary springs of self-collision",
+     [](R r) { return fmt::format("{}", r.self_contacts); }},
+    {"self_distance",
+     "least distance of particles that may collide, at most the thickness [m]; 0 without self-collision",
+     [](R r) { return fmt::format("{}", r.self_distance); }},
     {"max_strain", "largest (l - L)/L of the stretch springs",
      [](R r) { return fmt::format("{}", r.max_strain); }},
     {"p99_strain", "its 99th percentile", [](R r) { return fmt::format("{}", r.p99_strain); }},
@@ -66,13 +73,15 @@ constexpr StatsColumn columns[] = {
     {"kinetic", "kinetic energy [J]", [](R r) { return fmt::format("{}", r.kinetic); }},
     {"potential", "springs' and gravity's energy [J]", [](R r) { return fmt::format("{}", r.potential); }},
     {"ms_contact", "time: constraints and contact [ms]", time_text<0>, true},
-    {"ms_forces", "time: forces and splitting [ms]", time_text<1>, true},
-    {"ms_graph", "time: graph search [ms]", time_text<2>, true},
-    {"ms_assembly", "time: assembling A and b [ms]", time_text<3>, true},
-    {"ms_solve", "time: CG [ms]", time_text<4>, true},
-    {"ms_advance", "time: advancing the state [ms]", time_text<5>, true},
-    {"ms_measure", "time: strain and energy [ms]", time_text<6>, true},
-    {"ms_compare", "time: the undecomposed solve, where compared [ms]", time_text<7>, true},
+    {"ms_collision", "time: self-collision [ms]; 0 without it", time_text<1>, true},
+    {"ms_air", "time: air [ms]; 0 without wind", time_text<2>, true},
+    {"ms_forces", "time: forces and splitting [ms]", time_text<3>, true},
+    {"ms_graph", "time: graph search [ms]", time_text<4>, true},
+    {"ms_assembly", "time: assembling A and b [ms]", time_text<5>, true},
+    {"ms_solve", "time: CG [ms]", time_text<6>, true},
+    {"ms_advance", "time: advancing the state [ms]", time_text<7>, true},
+    {"ms_measure", "time: strain and energy [ms]", time_text<8>, true},
+    {"ms_compare", "time: the undecomposed solve, where compared [ms]", time_text<9>, true},
 };
 
 std::vector<std::string_view> split(std::string_view line, char at) {

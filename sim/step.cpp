@@ -52,16 +52,19 @@ void add_forces(const ClothModel& model, double h, StepWorkspace& ws) {
             }
         };
         gather(model.spring_adjacency, ws.extension.force);
+        if (model.self_collision) gather(ws.self.adjacency, ws.self.forces.force);
         gather(model.bend_adjacency, ws.bend);
         ws.impulse[p] += h * f;
     });
 }
 
-void count_springs(const StepWorkspace& ws, StepReport& report) {
-    for (const SpringState s : ws.extension.state) {
-        report.implicit += s == SpringState::implicit;
-        report.explicit_ += s == SpringState::explicit_;
-        report.inactive += s == SpringState::inactive;
+void count_springs(std::span<const SpringFamily> families, StepReport& report) {
+    for (const SpringFamily& family : families) {
+        for (const SpringState s : family.forces->state) {
+            report.implicit += s == SpringState::implicit;
+            report.explicit_ += s == SpringState::explicit_;
+            report.inactive += s == SpringState::inactive;
+        }
     }
 }
 
@@ -145,6 +148,19 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
     constrain(model, view, state, h, ws);
     timer.lap(report.times.contact);
 
+    // Effects that the scene calls for
+    const Splitting splitting = splitting_of(options);
+    if (model.self_collision) {
+        self_collide(model, state.x, state.v, h, splitting.stretch_threshold, ws.self);
+        timer.lap(report.times.collision);
+    }
+    if (model.wind) {
+        ws.air.resize(model.air.corners.size());
+        air_forces(model.air, *model.wind, state.t, h, model.mass, state.x, state.v, ws.air);
+        add_air(model.air, ws.air, h, ws.impulse);
+        timer.lap(report.times.air);
+    }
+
     // Forces at (x, v) (Sec. 2), and the adaptive IMEX splitting (Sec. 3.5)
     extension_forces(model.springs, model.mass, state.x, state.v, h, splitting_of(options),
                      options.activation_band, ws.extension);
@@ -157,7 +173,9 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
     timer.lap(report.times.forces);
 
     // Independent components (Sec. 5)
-    const SpringFamily families[] = {{&model.springs, &model.spring_adjacency, &ws.extension}};
+    const SpringFamily all_families[] = {{&model.springs, &model.spring_adjacency, &ws.extension},
+                                         {&ws.self.springs, &ws.self.adjacency, &ws.self.forces}};
+    const std::span<const SpringFamily> families(all_families, model.self_collision ? 2 : 1);
     if (options.decompose) {
         find_components(n, families, ws.constraints, ws.parent, ws.components);
     } else {
@@ -198,7 +216,9 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
     report.largest = ws.components.largest();
     for (const Constraint& c : ws.constraints.all()) ++(c.free == 0 ? report.constrained : report.partly);
     report.contacts = static_cast<std::uint32_t>(ws.touches.size());
-    count_springs(ws, report);
+    count_springs(families, report);
+    report.self_contacts = static_cast<std::uint32_t>(ws.self.springs.size());
+    report.self_distance = ws.self.least_distance;
     count_solves(ws.solves, report);
     measure(model, ws.bend_limit, state, ws.measure, report);
     timer.lap(report.times.measure);

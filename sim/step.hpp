@@ -9,6 +9,7 @@
 #include "sim/measure.hpp"
 #include "sim/model.hpp"
 #include "sim/report.hpp"
+#include "sim/self_collision.hpp"
 #include "sim/solve.hpp"
 #include "sim/state.hpp"
 #include "sim/system.hpp"
