@@ -6,6 +6,7 @@
 #include "sim/scene/load.hpp"
 #include "sim/simulate.hpp"
 #include "tool/clip.hpp"
+#include "tool/folder_lock.hpp"
 #include "tool/interrupt.hpp"
 #include "tool/options.hpp"
 #include "tool/progress.hpp"
@@ -14,6 +15,7 @@
 namespace unravel {
 
 int command_render(const Options& options) {
+    const InterruptWatch watch;
     const RunFolder cached{options.scene};
     if (!std::filesystem::exists(cached.scene())) {
         throw FolderError(fmt::format(
@@ -24,6 +26,7 @@ int command_render(const Options& options) {
     const ClipOptions clip_options = clip_options_of(options, scene);
     const RunFolder folder{options.output.empty() ? cached.root : options.output};
     check_clip(scene, folder, clip_options);
+    const FolderLock lock(folder.root);
     std::filesystem::create_directories(folder.frames());
     remove_partial_files(folder.frames());
 
@@ -38,7 +41,6 @@ int command_render(const Options& options) {
     }
     const int last = std::min(frames - 1, clip_options.last);
     Progress progress(scene.name, last - clip_options.first + 1, options.quiet);
-    const InterruptWatch watch;
     int next = 0;
     const FrameSource source = [&]() -> std::optional<FrameRecord> {
         if (next > last || InterruptWatch::requested()) return std::nullopt;

@@ -10,6 +10,8 @@
 #include "base/whole_file.hpp"
 #include "sim/scene/load.hpp"
 #include "tool/clip.hpp"
+#include "tool/failure_bundle.hpp"
+#include "tool/folder_lock.hpp"
 #include "tool/interrupt.hpp"
 #include "tool/options.hpp"
 #include "tool/progress.hpp"
@@ -51,6 +53,7 @@ void print_summary(const Options& options, const RunFolder& folder, const nlohma
 
 int simulate_clip(const Options& options, bool pictures) {
     const auto begin = std::chrono::steady_clock::now();
+    const InterruptWatch watch;
     Scene scene = load_scene(options.scene, options.overrides);
     const RunFolder folder{options.output.empty() ? std::filesystem::path("output") / scene.name
                                                   : options.output};
@@ -60,6 +63,7 @@ int simulate_clip(const Options& options, bool pictures) {
     const Existing existing = options.force    ? Existing::replace
                               : options.resume ? Existing::resume
                                                : Existing::refuse;
+    const FolderLock lock(folder.root);
     const std::uint64_t hash = open_run(folder, scene, existing);
 
     const int threads = thread_count(options);
@@ -74,7 +78,6 @@ int simulate_clip(const Options& options, bool pictures) {
 
     Progress progress(scene.name, scene.clip.frames(), options.quiet);
     const auto done = [&](int frame) { progress.show(frame + 1, std::min(cached, frame + 1)); };
-    const InterruptWatch watch;
     std::optional<ClipReport> report;
     const auto conclude = [&](const char* status) {
         progress.finish();
@@ -86,19 +89,27 @@ int simulate_clip(const Options& options, bool pictures) {
         write_whole_file(folder.run_json(), json.dump(2) + "\n");
         print_summary(options, folder, json);
     };
-    try {
-        if (pictures) {
-            Placement placement;
-            build_model(scene, placement);
-            report = make_clip(
-                scene, simulation.model, placement, folder, clip_options, [&] { return source.next(); },
-                done);
-        } else {
-            while (const std::optional<FrameRecord> record = source.next()) done(record->frame);
+    // A run that can't go on ends its clip as one that was stopped does: what it has is kept.
+    std::optional<SimulationError> failure;
+    const FrameSource next = [&]() -> std::optional<FrameRecord> {
+        try {
+            return source.next();
+        } catch (const SimulationError& error) {
+            failure = error;
+            return std::nullopt;
         }
-    } catch (const SimulationError&) {
+    };
+    if (pictures) {
+        Placement placement;
+        build_model(scene, placement);
+        report = make_clip(scene, simulation.model, placement, folder, clip_options, next, done);
+    } else {
+        while (const std::optional<FrameRecord> record = next()) done(record->frame);
+    }
+    if (failure) {
+        write_failure(folder, scene, hash, simulation, *failure, clip_options);
         conclude("failed");
-        throw;
+        throw *failure;
     }
     conclude(InterruptWatch::requested() ? "interrupted" : "complete");
     return InterruptWatch::requested() ? exit_interrupted : exit_done;

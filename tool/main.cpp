@@ -54,15 +54,20 @@ void add_output_options(CLI::App& command, Options& o) {
 }
 
 int guarded(const std::function<int()>& command) {
-    const auto failed = [](const std::exception& error, int code) {
-        fmt::print(stderr, "unravel: {}\n", error.what());
+    // Not fmt::print: it throws where standard error is closed, and the exit code is to be right even then.
+    const auto say = [](const std::string& text) { std::fputs(text.c_str(), stderr); };
+    const auto failed = [&](const std::exception& error, int code) {
+        say(fmt::format("unravel: {}\n", error.what()));
         return code;
     };
     try {
-        return command();
+        const int code = command();
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+            throw OutputError("standard output", "nobody reads it, or its disk is full");
+        return code;
     } catch (const SceneError& error) {
         // Its text is a list of located problems, to be read by editors as it is.
-        fmt::print(stderr, "{}\n", error.what());
+        say(fmt::format("{}\n", error.what()));
         return exit_scene;
     } catch (const UsageError& error) {
         return failed(error, exit_usage);
@@ -75,7 +80,7 @@ int guarded(const std::function<int()>& command) {
     } catch (const SimulationError& error) {
         return failed(error, exit_simulation);
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "unravel: memory ran out; `unravel check` tells what a scene needs\n");
+        say("unravel: memory ran out; `unravel check` tells what a scene needs\n");
         return exit_output;
     } catch (const std::exception& error) {
         return failed(error, exit_output);

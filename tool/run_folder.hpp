@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct RunFolder {
     std::filesystem::path stats() const { return root / "stats.csv"; }
     std::filesystem::path cache() const { return root / "cache"; }
     std::filesystem::path frames() const { return root / "frames"; }
+    std::filesystem::path failure() const { return root / "failure"; }
     std::filesystem::path record(int frame) const;
     std::filesystem::path picture(DrawStyle style, int frame) const;
     std::filesystem::path video(DrawStyle style, const std::string& ending) const;
