@@ -1,5 +1,7 @@
 #include "render/cloth_renderer.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -47,21 +49,32 @@ Vec3f mix(const Vec3f& a, const Vec3f& b, float t) {
     return a + t * (b - a);
 }
 
+GlProgram fabric_program(const ClothMesh& mesh) {
+    const ClothAppearance& look = mesh.appearance;
+    GlProgram program({"frame.glsl", "sky.glsl", "cloth.vert"},
+                      {"frame.glsl", "light.glsl", "weave.glsl", "cloth.frag"},
+                      fmt::format("#define WEAVE {}\n#define PICTURE {}\n", static_cast<int>(look.weave),
+                                  mesh.texture.pixels.empty() ? 0 : 1));
+    ShadowMaps::connect(program);
+    program.sampler("picture", 0);
+    const Vec3f front = linear(look.front), second = linear(look.front_second), back = linear(look.back);
+    const std::array<Vec3f, 2> yarn_front{front, second}, yarn_back{back, mix(back, second, 0.3f)};
+    glUniform1f(program.uniform("period"), look.period);
+    // Coarser than real yarn, so that the weave is seen at the distance a whole cloth is shown from.
+    glUniform1f(program.uniform("thread"), look.period / 24);
+    glUniform3fv(program.uniform("yarn_front"), 2, yarn_front[0].data());
+    glUniform3fv(program.uniform("yarn_back"), 2, yarn_back[0].data());
+    return program;
+}
+
 }  // namespace
 
-ClothRenderer::ClothRenderer(const DrawScene& scene)
-    : fabric_({"frame.glsl", "sky.glsl", "cloth.vert"},
-              {"frame.glsl", "light.glsl", "weave.glsl", "cloth.frag"}) {
-    ShadowMaps::connect(fabric_);
-    fabric_.sampler("picture", 0);
-    uniforms_ = {fabric_.uniform("weave"),        fabric_.uniform("period"),
-                 fabric_.uniform("thread"),       fabric_.uniform("yarn_front"),
-                 fabric_.uniform("yarn_back"),    fabric_.uniform("has_picture"),
-                 fabric_.uniform("picture_scale")};
+ClothRenderer::Cloth::Cloth(const ClothMesh& of) : mesh(&of), fabric(fabric_program(of)) {}
+
+ClothRenderer::ClothRenderer(const DrawScene& scene) {
     std::size_t most = 0, particles = 0;
     for (const ClothMesh& mesh : scene.cloths) {
-        Cloth& cloth = cloths_.emplace_back();
-        cloth.mesh = &mesh;
+        Cloth& cloth = cloths_.emplace_back(mesh);
         const std::size_t count = mesh.particle.size();
         most = std::max(most, count);
         for (const std::uint32_t p : mesh.particle) particles = std::max<std::size_t>(particles, p + 1);
@@ -88,7 +101,9 @@ ClothRenderer::ClothRenderer(const DrawScene& scene)
             upload_texture(cloth.texture, mesh.texture);
             Vec2f extent(1e-6f, 1e-6f);
             for (const Vec2f& uv : mesh.uv) extent = extent.cwiseMax(uv);
-            cloth.picture_scale = extent.cwiseInverse();
+            const Vec2f scale = extent.cwiseInverse();
+            cloth.fabric.use();
+            glUniform2fv(cloth.fabric.uniform("picture_scale"), 1, scale.data());
         }
     }
     normals_.resize(particles);
@@ -135,22 +150,10 @@ void ClothRenderer::draw_coarse() const {
 }
 
 void ClothRenderer::draw_fabric() const {
-    fabric_.use();
     for (const Cloth& cloth : cloths_) {
-        const ClothAppearance& look = cloth.mesh->appearance;
-        const Vec3f front = linear(look.front), second = linear(look.front_second), back = linear(look.back);
-        const std::array<Vec3f, 2> yarn_front{front, second}, yarn_back{back, mix(back, second, 0.3f)};
-        const bool has_picture = !cloth.mesh->texture.pixels.empty();
-        glUniform1i(uniforms_.weave, static_cast<int>(look.weave));
-        glUniform1f(uniforms_.period, look.period);
-        // Coarser than real yarn, so that the weave is seen at the distance a whole cloth is shown from.
-        glUniform1f(uniforms_.thread, look.period / 24);
-        glUniform3fv(uniforms_.yarn_front, 2, yarn_front[0].data());
-        glUniform3fv(uniforms_.yarn_back, 2, yarn_back[0].data());
-        glUniform1i(uniforms_.has_picture, has_picture);
-        glUniform2fv(uniforms_.picture_scale, 1, cloth.picture_scale.data());
+        cloth.fabric.use();
         glActiveTexture(GL_TEXTURE0);
-        glBindTexture(GL_TEXTURE_2D, has_picture ? GLuint{cloth.texture} : 0);
+        glBindTexture(GL_TEXTURE_2D, cloth.texture);
         draw_triangles(cloth);
     }
 }

@@ -29,16 +29,15 @@ private:
         Vec3f position, normal;
     };
     struct Cloth {
-        const ClothMesh* mesh = nullptr;
+        const ClothMesh* mesh;
+        GlProgram fabric;  ///< built for this cloth's weave
         GlVertexArray vertex_array;
         GlBuffer vertices, uvs, colors, indices, coarse_indices;
         GlVertexArray coarse_array;
         GLsizei coarse_count = 0;
         GlTexture texture;
-        Vec2f picture_scale{1, 1};  ///< 1/m
-    };
-    struct Uniforms {
-        GLint weave, period, thread, yarn_front, yarn_back, has_picture, picture_scale;
+
+        explicit Cloth(const ClothMesh& of);
     };
     void draw_triangles(const Cloth& cloth) const;
 
@@ -46,8 +45,6 @@ private:
     std::vector<Vec3f> normals_;   ///< (particles)
     std::vector<Vertex> scratch_;  ///< of one cloth at a time
     std::vector<std::array<std::uint8_t, 4>> scratch_colors_;
-    GlProgram fabric_;
-    Uniforms uniforms_;
 };
 
 }  // namespace unravel

@@ -11,8 +11,8 @@ namespace unravel {
 
 namespace {
 
-GLuint compile(GLenum stage, GlProgram::Files files) {
-    std::string source = "#version 330 core\n", names;
+GLuint compile(GLenum stage, GlProgram::Files files, std::string_view defines) {
+    std::string source = fmt::format("#version 330 core\n{}", defines), names;
     for (const std::string_view file : files) {
         const std::string_view text = shader_source(file);
         if (text.empty()) throw std::logic_error(fmt::format("there is no shader {}", file));
@@ -49,9 +49,9 @@ void float_attribute(GLuint location, int components, int stride_bytes, std::siz
                           reinterpret_cast<const void*>(offset_bytes));
 }
 
-GlProgram::GlProgram(Files vertex, Files fragment) {
-    const GLuint vertex_shader = compile(GL_VERTEX_SHADER, vertex);
-    const GLuint fragment_shader = compile(GL_FRAGMENT_SHADER, fragment);
+GlProgram::GlProgram(Files vertex, Files fragment, std::string_view defines) {
+    const GLuint vertex_shader = compile(GL_VERTEX_SHADER, vertex, defines);
+    const GLuint fragment_shader = compile(GL_FRAGMENT_SHADER, fragment, defines);
     program_ = glCreateProgram();
     glAttachShader(program_, vertex_shader);
     glAttachShader(program_, fragment_shader);

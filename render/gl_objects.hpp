@@ -102,11 +102,12 @@ class GlProgram {
 public:
     using Files = std::initializer_list<std::string_view>;
     /// Each stage is the concatenation of embedded files of shaders/, in order, after "#version 330 core".
-    /// Throws std::logic_error with the compiler's words: a shader that does not compile is our mistake.
-    GlProgram(Files vertex, Files fragment);
+    /// `defines`: preprocessor lines that go before both. Throws std::logic_error with the compiler's words:
+    /// a shader that does not compile is our mistake.
+    GlProgram(Files vertex, Files fragment, std::string_view defines = {});
     ~GlProgram();
-    GlProgram(const GlProgram&) = delete;
-    GlProgram& operator=(const GlProgram&) = delete;
+    GlProgram(GlProgram&& other) noexcept : program_(std::exchange(other.program_, 0)) {}
+    GlProgram& operator=(GlProgram&&) = delete;
 
     void use() const { glUseProgram(program_); }
     /// Location of a uniform; −1, which GL ignores, where the compiler removed it.

@@ -164,7 +164,7 @@ void Renderer::Parts::draw_components(const DrawFrame& frame) {
     glUniform4f(surface_uniforms.tint, 0.02f, 0.022f, 0.027f, 0);
     glUniform1i(surface_uniforms.fades, 0);
     // The denser the springs, the more of a component's colour its surface carries.
-    glUniform1f(surface_strength, std::clamp(0.55f - 0.05f * relative_gap, 0.12f, 0.5f));
+    glUniform1f(surface_strength, std::clamp(0.95f - 0.13f * relative_gap, 0.14f, 0.8f));
     cloths.draw_shapes();
     solids.draw_quiet(frame, surface_uniforms);
     glDisable(GL_POLYGON_OFFSET_FILL);

@@ -109,13 +109,11 @@ void ShadowMaps::bind() const {
         glBindTexture(GL_TEXTURE_2D, texture);
         glBindSampler(unit, sampler);
     };
-    bind_unit(unit_compare, key_map_, compare_);
     bind_unit(unit_depth, key_map_, depth_);
     bind_unit(unit_sky, sky_maps_, compare_);
 }
 
 void ShadowMaps::connect(const GlProgram& program) {
-    program.sampler("shadow_compare", unit_compare);
     program.sampler("shadow_depth", unit_depth);
     program.sampler("sky_maps", unit_sky);
 }

@@ -22,14 +22,14 @@ public:
     /// Fills in the parts of the block that belong to shadows; they never change.
     void describe(FrameBlock& block) const;
     void draw(const DrawCasters& draw_casters) const;
-    /// Binds the maps to texture units key_compare, key_depth and sky.
+    /// Binds the maps to their texture units.
     void bind() const;
     /// Points a program's samplers at those units.
     static void connect(const GlProgram& program);
 
 private:
     static constexpr int tile = 256, columns = 4, rows = 2;
-    static constexpr int unit_compare = 1, unit_depth = 2, unit_sky = 3;
+    static constexpr int unit_depth = 1, unit_sky = 2;
 
     int key_size_;
     float radius_;

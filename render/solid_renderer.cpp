@@ -100,11 +100,13 @@ void SolidRenderer::draw_quiet(const DrawFrame& frame, const SurfaceUniforms& un
     for (const Part& part : parts_) {
         Eigen::Matrix4f matrix = pose(part, frame);
         const Vec3f middle = matrix.block<3, 1>(0, 3);
-        // Greys that stay behind the wires.
-        const float grey = part.fades ? 0.034f : 0.10f;
+        // Tones of the background that stay behind the wires.
+        const Vec3f background = linear(scene_->components_background);
+        const Vec3f tint =
+            part.fades ? Vec3f(2.2f * background) : Vec3f(3.5f * background + Vec3f::Constant(0.04f));
         if (part.fades) matrix.block<3, 3>(0, 0) *= quiet_ground;
         glUniformMatrix4fv(uniforms.model, 1, GL_FALSE, matrix.data());
-        glUniform4f(uniforms.tint, grey, 1.03f * grey, 1.1f * grey, 1);
+        glUniform4f(uniforms.tint, tint.x(), tint.y(), tint.z(), 1);
         glUniform1i(uniforms.fades, part.fades);
         glUniform3fv(uniforms.fade_centre, 1, middle.data());
         part.fine.draw();

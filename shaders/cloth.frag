@@ -1,9 +1,10 @@
 // Cloth: wrapped diffuse with a sheen of fibres standing off the surface, light through the cloth, two sides.
 // Sheen: "Charlie" distribution [Estevez & Kulla 2017, Production Friendly Microfacet Sheen BRDF], with the visibility
 // term of Neubelt & Pettineo 2013; energy-conserving wrap as in Filament's cloth model.
+#if PICTURE
 uniform sampler2D picture;
-uniform bool has_picture;
 uniform vec2 picture_scale;  // 1/m
+#endif
 in vec3 world;
 in vec3 world_normal;
 in vec2 cloth_uv;
@@ -27,19 +28,21 @@ void main() {
     float open = gl_FrontFacing ? openness.x : openness.y;
 
     Woven cloth = woven(cloth_uv, gl_FrontFacing);
-    if (has_picture && gl_FrontFacing) cloth.albedo = texture(picture, cloth_uv * picture_scale).rgb;
+#if PICTURE
+    if (gl_FrontFacing) cloth.albedo = texture(picture, cloth_uv * picture_scale).rgb;
+#endif
     vec3 n = smooth_n;
-    if (cloth.tilt != vec2(0.0)) {
-        // Directions of u and v on the surface, from how both change across the pixel.
-        vec3 px = dFdx(world), py = dFdy(world);
-        vec2 ux = dFdx(cloth_uv), uy = dFdy(cloth_uv);
-        float area = ux.x * uy.y - ux.y * uy.x;
-        if (abs(area) > 1e-20) {
-            vec3 along_u = normalize((px * uy.y - py * ux.y) * sign(area));
-            vec3 along_v = normalize((py * ux.x - px * uy.x) * sign(area));
-            n = normalize(n + 0.8 * (along_u * cloth.tilt.x + along_v * cloth.tilt.y));
-        }
+#if WEAVE != 4
+    // Directions of u and v on the surface, from how both change across the pixel.
+    vec3 px = dFdx(world), py = dFdy(world);
+    vec2 ux = dFdx(cloth_uv), uy = dFdy(cloth_uv);
+    float area = ux.x * uy.y - ux.y * uy.x;
+    for (int near = cloth.tilt != vec2(0.0) && abs(area) > 1e-20 ? 1 : 0; near > 0; --near) {
+        vec3 along_u = normalize((px * uy.y - py * ux.y) * sign(area));
+        vec3 along_v = normalize((py * ux.x - px * uy.x) * sign(area));
+        n = normalize(n + 0.8 * (along_u * cloth.tilt.x + along_v * cloth.tilt.y));
     }
+#endif
 
     vec3 l = key_direction.xyz;
     float nv = clamp(dot(n, v), 0.02, 1.0), nl = dot(n, l), surface_nl = dot(smooth_n, l);

@@ -1,5 +1,4 @@
 // Key light with soft shadows, hemisphere of ambient light, tone curve.
-uniform sampler2DShadow shadow_compare;
 uniform sampler2D shadow_depth;
 
 // Share of the key light that reaches p, whose surface faces the light along n (dot(n, l) > 0).
@@ -7,34 +6,39 @@ uniform sampler2D shadow_depth;
 float key_visibility(vec3 p, vec3 n) {
     float slope = 1.0 - dot(n, key_direction.xyz);
     vec3 at = (shadow_matrix * vec4(p + n * shadow.x * (0.8 + 2.0 * slope), 1.0)).xyz;
-    if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
+    bool inside = all(greaterThan(at, vec3(0.0))) && all(lessThan(at, vec3(1.0)));
 
     // Turn the disk by one of 16 angles of a 4 × 4 ordered pattern: neighbours see different rings.
     ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
-    float angle = float((cell.x * 5 + cell.y * 7 + cell.x * cell.y * 3) & 15) * (6.2831853 / 16.0);
-    mat2 turn = mat2(cos(angle), sin(angle), -sin(angle), cos(angle));
+    float angle = float(((cell.x ^ cell.y) & 1) * 8 + (cell.y & 1) * 4 + (((cell.x ^ cell.y) >> 1) & 1) * 2 +
+                        ((cell.y >> 1) & 1)) * (6.2831853 / 16.0);
+    vec2 spoke = vec2(cos(angle), sin(angle));
+    const mat2 golden = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);
 
+    // Loops of a length known only here: rasterisers on the CPU run both sides of an if for every pixel, but leave a
+    // loop that no pixel needs.
     float search = 0.35 * key_direction.w;  // blockers up to 0.35 of the map's extent away
     float sum = 0.0, count = 0.0;
-    for (int i = 0; i < 6; ++i) {
-        float r = sqrt((float(i) + 0.5) / 6.0), phi = float(i) * 2.3999632;
-        vec2 offset = turn * vec2(r * cos(phi), r * sin(phi)) * search;
-        float depth = texture(shadow_depth, at.xy + offset).r;
+    int taps = inside ? 6 : 0;
+    for (int i = 0; i < taps; ++i) {
+        float r = sqrt((float(i) + 0.5) / 6.0) * search;
+        spoke = golden * spoke;
+        float depth = texture(shadow_depth, at.xy + spoke * r).r;
         // The receiver's own plane is no blocker: allow for its slope within the disk.
-        if (depth < at.z - 0.002 - 0.5 * r * search) {
+        if (depth < at.z - 0.002 - 0.5 * r) {
             sum += depth;
             count += 1.0;
         }
     }
-    if (count == 0.0) return 1.0;
-    float width = max(shadow.x / shadow.y, (at.z - sum / count) * key_direction.w);
+    float width = max(shadow.x / shadow.y, (at.z - sum / max(count, 1.0)) * key_direction.w);
     float lit = 0.0;
-    for (int i = 0; i < 8; ++i) {
-        float r = sqrt((float(i) + 0.5) / 8.0), phi = float(i) * 2.3999632 + 1.0;
-        vec2 offset = turn * vec2(r * cos(phi), r * sin(phi)) * width;
-        lit += texture(shadow_compare, vec3(at.xy + offset, at.z - 0.35 * r * width));
+    taps = count > 0.0 ? 12 : 0;
+    for (int i = 0; i < taps; ++i) {
+        float r = sqrt((float(i) + 0.5) / 12.0) * width;
+        spoke = golden * spoke;
+        lit += step(at.z - 0.35 * r - 0.0004, texture(shadow_depth, at.xy + spoke * r).r);
     }
-    return lit / 8.0;
+    return count > 0.0 ? lit / 12.0 : 1.0;
 }
 
 // Light from all around at normal n, as if nothing stood in the way.

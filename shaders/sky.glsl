@@ -7,10 +7,9 @@ float sky_visibility(int k, vec3 p) {
     // Beyond its tile nothing stands in the way.
     vec2 inside = at.xy * vec2(4.0, 2.0) - tile;
     if (any(lessThan(inside, vec2(0.02))) || any(greaterThan(inside, vec2(0.98)))) return 1.0;
-    // A wide rotated square: each direction stands for a broad cone of sky, so its edge is to be soft.
-    vec2 texel = 1.0 / vec2(textureSize(sky_maps, 0)), a = vec2(1.9, 0.7) * texel, b = vec2(-0.7, 1.9) * texel;
-    return 0.25 * (texture(sky_maps, vec3(at.xy + a, at.z)) + texture(sky_maps, vec3(at.xy - a, at.z)) +
-                   texture(sky_maps, vec3(at.xy + b, at.z)) + texture(sky_maps, vec3(at.xy - b, at.z)));
+    // Far apart: each direction stands for a broad cone of sky, so its edge is to be soft.
+    vec2 a = vec2(1.4, k % 2 == 0 ? 1.4 : -1.4) / vec2(textureSize(sky_maps, 0));
+    return 0.5 * (texture(sky_maps, vec3(at.xy + a, at.z)) + texture(sky_maps, vec3(at.xy - a, at.z)));
 }
 
 // Cosine-weighted open share of the sky above either side of a surface: x for the side n points to, y for the other.

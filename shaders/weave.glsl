@@ -1,5 +1,5 @@
 // Woven patterns from two yarns, filtered by the size of a pixel so that they fade to their mean and never alias.
-uniform int weave;           // 0 plain, 1 twill, 2 checks, 3 stripes, 4 solid
+// WEAVE: 0 plain, 1 twill, 2 checks, 3 stripes, 4 solid; known when the shader is built.
 uniform float period;        // m, of checks and stripes
 uniform float thread;        // m, between threads
 uniform vec3 yarn_front[2];  // linear
@@ -15,7 +15,8 @@ float stripe(float x, float duty, float w) {
     w = max(w, 1e-4);
     vec2 at = vec2(x - 0.5 * w, x + 0.5 * w);
     vec2 integral = floor(at) * duty + min(fract(at), duty);
-    return (integral.y - integral.x) / w;
+    // A box lets moiré through where a pixel nears half a stripe: fade to the mean before that.
+    return mix((integral.y - integral.x) / w, duty, smoothstep(0.2, 0.45, w));
 }
 
 Woven woven(vec2 uv, bool front) {
@@ -25,25 +26,26 @@ Woven woven(vec2 uv, bool front) {
 
     vec3 warp = a, weft = a;  // threads along v and along u
     float over = 0.5;         // share of warp on top
-    if (weave == 0) weft = mix(a, b, 0.22);
-    if (weave == 1) {
-        weft = b;
-        over = mix(0.62, stripe((s.x + s.y) / 4.0, 0.62, (pixel.x + pixel.y) / 4.0), 0.8);
-    }
-    if (weave == 2) {
-        warp = mix(b, a, stripe(uv.x / period, 0.5, size.x / period));
-        weft = mix(b, a, stripe(uv.y / period, 0.5, size.y / period));
-    }
-    if (weave == 3) {
-        warp = mix(b, a, stripe(uv.x / period, 0.5, size.x / period));
-        weft = warp;
-    }
+#if WEAVE == 0
+    weft = mix(a, b, 0.22);
+#elif WEAVE == 1
+    weft = b;
+    over = mix(0.62, stripe((s.x + s.y) / 4.0, 0.62, (pixel.x + pixel.y) / 4.0), 0.8);
+#elif WEAVE == 2
+    warp = mix(b, a, stripe(uv.x / period, 0.5, size.x / period));
+    weft = mix(b, a, stripe(uv.y / period, 0.5, size.y / period));
+#elif WEAVE == 3
+    warp = mix(b, a, stripe(uv.x / period, 0.5, size.x / period));
+    weft = warp;
+#endif
 
     Woven result = Woven(mix(weft, warp, over), vec2(0.0));
+#if WEAVE != 4
     float detail = 1.0 - smoothstep(0.22, 0.6, max(pixel.x, pixel.y));
-    if (detail > 0.0 && weave != 4) {
+    // A loop and not an if, for the reason given in key_visibility.
+    for (int near = detail > 0.0 ? 1 : 0; near > 0; --near) {
         vec2 cell = floor(s), within = fract(s) - 0.5;
-        bool warp_on_top = weave == 1 ? mod(cell.x + cell.y, 4.0) < 2.0 : mod(cell.x + cell.y, 2.0) < 1.0;
+        bool warp_on_top = WEAVE == 1 ? mod(cell.x + cell.y, 4.0) < 2.0 : mod(cell.x + cell.y, 2.0) < 1.0;
         // Across the thread on top the surface is round; along it, it dives under its neighbours.
         vec2 across = warp_on_top ? within : within.yx;
         float shade = 1.0 - 1.1 * across.x * across.x - 0.5 * across.y * across.y;
@@ -53,5 +55,6 @@ Woven woven(vec2 uv, bool front) {
         vec2 tilt = vec2(1.0 * across.x, 0.5 * across.y);
         result.tilt = detail * (warp_on_top ? tilt : tilt.yx);
     }
+#endif
     return result;
 }

@@ -34,8 +34,9 @@ void main() {
     vec2 forward = length_px > 1e-4 ? run / length_px : vec2(1.0, 0.0);
     // Where springs stand closer than the pen is wide, a finer pen keeps them apart; below a pixel it pales instead.
     float gap = spacing * viewport.z / max(0.5 * (ca.w + cb.w), 1e-3);
-    float fine = min(width, max(0.3 * gap, 0.2)), half_width = 0.5 * max(fine, 1.0);
-    pen = vec2(half_width, strength * min(fine, 1.0));
+    float fine = min(width, max(0.24 * gap, 0.25)), half_width = 0.5 * max(fine, 1.0);
+    // Among wires too dense to be told apart the surface's shading shows the shape.
+    pen = vec2(half_width, strength * min(fine, 1.0) * mix(0.35, 1.0, smoothstep(1.0, 4.0, gap)));
 
     float reach = half_width + 0.5;
     vec4 clip = end < 0.5 ? ca : cb;

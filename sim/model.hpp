@@ -52,8 +52,11 @@ struct ClothModel {
     BendSprings bends;
     Adjacency bend_adjacency;
     std::vector<PinnedGroup> pins;
-    Vec3 gravity{0, 0, 0};      ///< m/s²
-    std::vector<Solid> solids;  ///< what the cloth meets; empty: no contact at all
+    Vec3 gravity{0, 0, 0};                        ///< m/s²
+    std::vector<Solid> solids;                    ///< what the cloth meets; empty: no contact at all
+    std::optional<Wind> wind;                     ///< absent: no air at all
+    AirCells air;                                 ///< empty without wind
+    std::optional<SelfCollision> self_collision;  ///< absent: none; what the scene leaves open is filled in
     std::size_t size() const { return mass.size(); }
 };
 

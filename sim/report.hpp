@@ -32,8 +32,8 @@ struct StepReport {
     double whole_difference = 0;             ///< largest difference of the two solutions [m/s]
     bool converged = true;                   ///< every component reached the tolerance
     std::uint32_t contacts = 0;
-    std::uint32_t self_contacts =
-        0;  ///< temporary springs of self-collision; they count as implicit or explicit too
+    /// Temporary springs of self-collision; they count as implicit or explicit too.
+    std::uint32_t self_contacts = 0;
     double self_distance = 0;  ///< m, least between particles that may collide, at most the thickness
     double max_strain = 0, p99_strain = 0;  ///< of stretch springs, (l − L)/L
     double lowest = 0;                      ///< m, lowest particle's y

@@ -36,6 +36,8 @@ struct StepWorkspace {
     ExtensionForces extension;
     BendLimit bend_limit;
     std::vector<Vec3> bend;                            ///< (bend springs) N
+    std::vector<Vec3> air;        ///< (cells) N; empty without wind
+    SelfCollisionWorkspace self;  ///< empty without self-collision
     std::vector<Vec3> base, impulse, drift, reaction;  ///< (particles); reaction is (constraints)
     std::vector<std::uint32_t> parent;
     Components components, whole;

@@ -38,7 +38,8 @@ private:
         // On a tube the way through the air is shorter than along the cloth, so the bound holds there too.
         const double reach_u = spacing(0) * std::max(i - i0, i1 - 1 - i);
         const double reach_v = spacing(1) * std::max(j - j0, j1 - 1 - j);
-        if (distance > std::hypot(reach_u, reach_v) * (1 + 1e-9) || (i1 - i0 == 1 && j1 - j0 == 1)) return {};
+        const bool single = i1 - i0 == 1 && j1 - j0 == 1;
+        if (single || distance + solid_.offset > std::hypot(reach_u, reach_v) * (1 + 1e-9)) return {};
         for (const auto& [a0, a1] : {std::array{i0, i}, std::array{i, i1}}) {
             for (const auto& [b0, b1] : {std::array{j0, j}, std::array{j, j1}}) {
                 if (a0 == a1 || b0 == b1) continue;

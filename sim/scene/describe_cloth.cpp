@@ -84,8 +84,11 @@ void describe(Fields& f, Material& material) {
 void describe(Fields& f, Region& region, const Cloth& cloth) {
     f.place(region.place);
     describe_box(f, {"box", "[u0, v0, u1, v1], each from 0 to 1", true}, region.box);
-    f.optional_table({"material", "numbers that are not said are the cloth's own"}, region.material,
-                     cloth.material, [&](Fields& g, Material& material) {
+    // The numbers are inherited, the preset's name is not: it stands for a density, too.
+    Material own = cloth.material;
+    own.preset.clear();
+    f.optional_table({"material", "numbers that are not said are the cloth's own"}, region.material, own,
+                     [&](Fields& g, Material& material) {
                          describe(g, material);
                          const MaterialPreset* preset =
                              g.says("preset") ? find_preset(material.preset) : nullptr;

@@ -39,8 +39,10 @@ void describe(Fields& f, Clip& clip) {
 
 void describe(Fields& f, Solver& solver) {
     f.choice({"integrator", "time stepping method"}, solver.integrator, integrators);
-    f.fraction({"step", "s, a whole part of a frame; a number or a fraction such as \"1/240\""}, solver.step,
-               {1e-7, 1, false, "s"});
+    f.fraction({"step",
+                "a whole part of a frame [s]; a number or a fraction such as \"1/240\"; default: the largest "
+                "up to 1/240"},
+               solver.step, {1e-7, 1, false, "s"});
     f.number({"threshold", "springs with (h/m)(k h + 2 k_d) up to this are handled explicitly"},
              solver.threshold, {0, 1e9});
     f.choice({"preconditioner", "of the conjugate gradients"}, solver.preconditioner, preconditioners);

@@ -19,15 +19,17 @@ void describe(Fields& f, Friction& friction) {
 void describe(Fields& f, Solid& solid) {
     f.place(solid.place);
     f.text({"name", "for messages and reports"}, solid.name, TextKind::name);
-    f.choice({"shape", "unrotated, planes face up, cylinders and capsules stand", true}, solid.shape, shapes);
+    f.choice({"shape", "unrotated, a plane faces up, a cylinder or capsule stands", true}, solid.shape,
+             shapes);
     const Shape shape = solid.shape;
     const bool curved = shape == Shape::sphere || shape == Shape::cylinder || shape == Shape::capsule;
-    f.number({"radius", "m; of spheres, cylinders, capsules", false, curved}, solid.radius, length_bounds);
-    f.number({"height", "m; cylinder: whole height, capsule: between the centres of its caps", false,
+    f.number({"radius", "of spheres, cylinders and capsules [m]", false, curved}, solid.radius,
+             length_bounds);
+    f.number({"height", "of cylinders (whole) and capsules (between the centres of the caps) [m]", false,
               shape == Shape::cylinder || shape == Shape::capsule},
              solid.height, length_bounds);
-    f.vector({"size", "m, edge lengths of a box", false, shape == Shape::box}, solid.size, length_bounds);
-    f.number({"round", "m, radius of the rounded edges of boxes and cylinders", false,
+    f.vector({"size", "edge lengths of a box [m]", false, shape == Shape::box}, solid.size, length_bounds);
+    f.number({"round", "radius of the rounded edges of boxes and cylinders [m]", false,
               shape == Shape::box || shape == Shape::cylinder},
              solid.round, {0, 1000, false, "m"});
     f.vector({"center", "m"}, solid.center, position_bounds);

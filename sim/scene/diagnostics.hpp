@@ -30,6 +30,7 @@ std::string printable(std::string_view text);
 class Places {
 public:
     void add(const std::string& path, SourcePlace place) { places_[path] = place; }
+    bool has(const std::string& path) const { return places_.contains(path); }
     void mark_bad(const std::string& path) { bad_.insert(path); }
     /// The value's place, or that of the nearest table around it that the file has.
     SourcePlace at(std::string path) const;

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "sim/scene/limits.hpp"
+#include "sim/scene/unfit_text.hpp"
 
 namespace unravel {
 
@@ -57,43 +57,13 @@ Node convert(const toml::node& node) {
     return out;
 }
 
-/// The first dotted key with more parts than anyone needs, {0, 0} if there is none. The library builds a
-/// table for each part and frees them by recursion, so a long enough key would exhaust the stack.
-SourcePlace endless_key(std::string_view text) {
-    int line = 1, column = 0;
-    std::size_t dots = 0;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        ++column;
-        const char c = text[i];
-        if (c == '\n') {
-            ++line;
-            column = 0;
-        }
-        if (c == '\n' || c == '=' || c == ',' || c == '{' || c == '[') dots = 0;
-        if (c == '.' && ++dots >= max_key_parts) return {line, column, 0};
-        if (c == '#') {
-            while (i + 1 < text.size() && text[i + 1] != '\n') ++i;
-        }
-        if (c != '"' && c != '\'') continue;
-        const bool multi = text.substr(i, 3) == std::string(3, c);
-        const std::string_view end = text.substr(i, multi ? 3 : 1);
-        for (i += end.size(); i < text.size() && text.substr(i, end.size()) != end; ++i) {
-            if (!multi && text[i] == '\n') break;
-            if (text[i] == '\n') {
-                ++line;
-                column = 0;
-            }
-            if (c == '"' && text[i] == '\\') ++i;
-        }
-        // A multi-line text may end in up to two quotes of its own.
-        if (multi) {
-            i += 2;
-            while (i + 1 < text.size() && text[i + 1] == c) ++i;
-        } else if (i < text.size() && text[i] == '\n') {
-            --i;
-        }
-    }
-    return {};
+/// The library's words without what only its programmers need.
+std::string reason(std::string_view description) {
+    if (description.find("maximum nested value depth") != std::string_view::npos)
+        return "lists and tables are nested too deep";
+    constexpr std::string_view opening = "Error while parsing ";
+    if (description.starts_with(opening)) description.remove_prefix(opening.size());
+    return std::string(description);
 }
 
 void move_to_option(Node& node, int option, int shift) {
@@ -125,7 +95,7 @@ std::string_view kind_name(Node::Kind kind) {
         case Node::Kind::integer:
             return "a whole number";
         case Node::Kind::number:
-            return "a number";
+            return "a decimal number";
         case Node::Kind::text:
             return "a text";
         case Node::Kind::date:
@@ -139,8 +109,8 @@ std::string_view kind_name(Node::Kind kind) {
 }
 
 bool parse_document(std::string_view text, Node& root, std::vector<SceneProblem>& problems) {
-    if (const SourcePlace place = endless_key(text); place.line > 0) {
-        problems.push_back({place, "a key of more than 16 parts", ""});
+    if (std::optional<SceneProblem> problem = unfit_text(text)) {
+        problems.push_back(std::move(*problem));
         return false;
     }
     try {
@@ -148,15 +118,14 @@ bool parse_document(std::string_view text, Node& root, std::vector<SceneProblem>
         root.place = {1, 1, 0};
         return true;
     } catch (const toml::parse_error& error) {
-        problems.push_back(
-            {place_of(error.source()), "this is not TOML: " + std::string(error.description()), ""});
+        problems.push_back({place_of(error.source()), "this is not TOML", reason(error.description())});
         return false;
     }
 }
 
 bool parse_value(std::string_view text, int option, int shift, Node& value) {
     const std::string line = "v=" + std::string(text);
-    if (endless_key(line).line > 0) return false;
+    if (unfit_text(line)) return false;
     try {
         const toml::table table = toml::parse(line);
         if (table.size() != 1) return false;

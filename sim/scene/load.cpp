@@ -55,12 +55,13 @@ std::string_view shape_name(const Solid& solid) {
 }
 
 /// What only a scene without problems gets: names, a camera, a step that divides the frame exactly.
-void complete(Scene& scene) {
+void complete(Scene& scene, bool says_step) {
     if (scene.cameras.empty()) scene.cameras.emplace_back();
     complete_names(scene.cloths, [](const Cloth&) { return std::string_view("cloth"); });
     complete_names(scene.solids, shape_name);
     complete_names(scene.cameras, [](const Camera&) { return std::string_view("camera"); });
-    const double per_frame = std::round(1 / (scene.clip.fps * scene.solver.step));
+    const double steps = 1 / (scene.clip.fps * scene.solver.step);
+    const double per_frame = says_step ? std::round(steps) : std::ceil(steps * (1 - step_slack));
     scene.solver.step = 1 / (scene.clip.fps * per_frame);
 }
 
@@ -99,7 +100,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
     check_looks(checking, folder);
     stop_on_problems();
 
-    complete(scene);
+    complete(scene, places.has("solver.step"));
     scene.name = std::filesystem::path(name).stem().string();
     scene.text = text;
     return scene;

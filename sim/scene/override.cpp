@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 
@@ -26,7 +27,8 @@ bool in_key(char c) {
 /// The parts of a path; empty where it is none.
 std::vector<Step> parse_path(std::string_view path, int option) {
     std::vector<Step> steps;
-    std::size_t at = 0;
+    while (!path.empty() && path.back() == ' ') path.remove_suffix(1);
+    std::size_t at = std::min(path.find_first_not_of(' '), path.size());
     while (at < path.size()) {
         Step step{{}, {}, {1, static_cast<int>(at) + 1, option}};
         while (at < path.size() && in_key(path[at])) step.key += path[at++];

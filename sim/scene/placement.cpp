@@ -18,7 +18,10 @@ Vec2 particle_uv(const Cloth& cloth, int i, int j) {
     return {cloth.wrap == Wrap::tube ? double(i) / nu : along(i, nu), along(j, nv)};
 }
 
-Vec3 placed_particle(const Cloth& cloth, int i, int j) {
+namespace {
+
+/// Before the cloth is turned and moved.
+Vec3 unrotated(const Cloth& cloth, int i, int j) {
     const Vec2 uv = particle_uv(cloth, i, j);
     const double width = cloth.size[0] * cloth.placed_scale[0];
     const double length = cloth.size[1] * cloth.placed_scale[1];
@@ -31,7 +34,24 @@ Vec3 placed_particle(const Cloth& cloth, int i, int j) {
     } else {
         local.x() = (uv.x() - 0.5) * width;
     }
-    return cloth.center + rotation_matrix(cloth.rotation) * local;
+    return local;
+}
+
+}  // namespace
+
+Vec3 placed_particle(const Cloth& cloth, int i, int j) {
+    return cloth.center + rotation_matrix(cloth.rotation) * unrotated(cloth, i, j);
+}
+
+std::vector<Vec3> placed_particles(const Cloth& cloth) {
+    const auto [nu, nv] = cloth.particles;
+    const Eigen::Matrix3d rotation = rotation_matrix(cloth.rotation);
+    std::vector<Vec3> out;
+    out.reserve(static_cast<std::size_t>(nu) * static_cast<std::size_t>(nv));
+    for (int j = 0; j < nv; ++j) {
+        for (int i = 0; i < nu; ++i) out.push_back(cloth.center + rotation * unrotated(cloth, i, j));
+    }
+    return out;
 }
 
 bool pin_catches(const Cloth& cloth, const Pin& pin, int i, int j) {

@@ -20,6 +20,9 @@ Vec2 particle_uv(const Cloth& cloth, int i, int j);
 /// Where the particle is placed [m], without jitter.
 Vec3 placed_particle(const Cloth& cloth, int i, int j);
 
+/// The same for all of them, at j · nu + i.
+std::vector<Vec3> placed_particles(const Cloth& cloth);
+
 /// Whether a pin catches the particle at (i, j). One on the border of a box or disc, to within 1e-9, is
 /// caught.
 bool pin_catches(const Cloth& cloth, const Pin& pin, int i, int j);

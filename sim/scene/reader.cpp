@@ -18,7 +18,12 @@ std::string Reader::path_of(std::string_view key) const {
     return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }
 
+void Reader::know(std::string_view key) {
+    if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
+}
+
 void Reader::report(std::string_view key, SourcePlace place, std::string what, std::string hint) {
+    if (shared_.problems.size() >= max_problems) return;
     shared_.places.mark_bad(path_of(key));
     shared_.problems.push_back({place, std::move(what), std::move(hint)});
 }
@@ -35,17 +40,18 @@ void Reader::place(SourcePlace& place, std::string_view key) const {
 }
 
 const Node* Reader::take(const Key& key) {
-    known_.push_back(key.name);
+    know(key.name);
     const Entry* entry = table_.find(key.name);
     if (!entry) {
         if (key.required)
             report(key.name, table_.place,
                    fmt::format("{} '{}'", path_.empty() ? "the scene has no" : "missing key", key.name),
-                   std::string(key.doc));
+                   path_.empty() ? fmt::format("write a table [{}]", key.name)
+                                 : fmt::format("write {} = … ({})", key.name, key.doc));
         return nullptr;
     }
     if (!key.applies) {
-        report(key.name, entry->place, fmt::format("'{}' does not apply here", key.name),
+        report(key.name, entry->place, fmt::format("'{}' does not belong here", key.name),
                std::string(key.doc));
         return nullptr;
     }
@@ -54,7 +60,7 @@ const Node* Reader::take(const Key& key) {
 }
 
 bool Reader::creates(const Key& key) {
-    known_.push_back(key.name);
+    know(key.name);
     return says(key.name);
 }
 
@@ -83,12 +89,13 @@ void Reader::finish() {
 void Reader::report_unknown(const Entry& entry) {
     std::string hint;
     const std::string_view near = most_similar(entry.key, known_, 1);
-    const std::vector<std::string> tables = tables_with_key(entry.key);
+    if (shared_.tables_of_keys.empty()) shared_.tables_of_keys = tables_of_keys();
+    const auto elsewhere = shared_.tables_of_keys.find(entry.key);
     const std::string_view far = most_similar(entry.key, known_);
     if (!near.empty() && entry.key.size() > 2) {
         hint = fmt::format("did you mean '{}'?", near);
-    } else if (!tables.empty()) {
-        const std::vector<std::string_view> views(tables.begin(), tables.end());
+    } else if (elsewhere != shared_.tables_of_keys.end()) {
+        const std::vector<std::string_view> views(elsewhere->second.begin(), elsewhere->second.end());
         hint = fmt::format("it belongs in {}",
                            one_of(std::span(views).first(std::min<std::size_t>(3, views.size())), '\0'));
     } else if (!far.empty()) {
@@ -118,8 +125,9 @@ bool Reader::read_number(std::string_view key, const Node& value, const Bounds& 
     }
     const std::string unit = bounds.unit.empty() ? std::string() : fmt::format(" {}", bounds.unit);
     const std::string range =
-        bounds.above_low ? fmt::format("it must be above {} and at most {}{}", bounds.low, bounds.high, unit)
-                         : fmt::format("it must be from {} to {}{}", bounds.low, bounds.high, unit);
+        bounds.above_low
+            ? fmt::format("it must be above {:g} and at most {:g}{}", bounds.low, bounds.high, unit)
+            : fmt::format("it must be from {:g} to {:g}{}", bounds.low, bounds.high, unit);
     if (std::isnan(number))
         report(key, value.place, fmt::format("'{}' is nan, not a number", key), range);
     else if (std::isinf(number))

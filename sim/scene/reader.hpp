@@ -12,6 +12,7 @@ namespace unravel {
 struct Reading {
     std::vector<SceneProblem>& problems;
     Places& places;
+    std::map<std::string, std::vector<std::string>> tables_of_keys = {};  ///< made for the first unknown key
 };
 
 class Reader : public Fields {
@@ -55,6 +56,7 @@ protected:
 private:
     /// The key's value if it is there and may be; marks the key as known.
     const Node* take(const Key&);
+    void know(std::string_view key);
     std::string path_of(std::string_view key) const;
     void report(std::string_view key, SourcePlace place, std::string what, std::string hint = {});
     bool wrong_kind(std::string_view key, const Node& value, std::string_view wanted);

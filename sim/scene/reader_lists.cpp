@@ -7,14 +7,6 @@
 
 namespace unravel {
 
-namespace {
-
-std::string counted(std::size_t count, std::string_view what) {
-    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
-
-}  // namespace
-
 void Reader::integers(const Key& key, std::span<int> out, int low, int high) {
     const Node* value = take(key);
     if (!value) return;
@@ -77,9 +69,9 @@ void Reader::words(const Key& key, std::vector<std::string>& out, std::span<cons
             report(key.name, value->place, fmt::format("'{}' is an empty list", key.name),
                    "name at least one");
         if (value->items.size() > words.size())
-            report(key.name, value->place,
-                   fmt::format("'{}' has {}, of {}", key.name, counted(value->items.size(), "entry"),
-                               words.size()));
+            report(
+                key.name, value->place,
+                fmt::format("'{}' has {} words, there are {}", key.name, value->items.size(), words.size()));
         else
             for (const Node& item : value->items) add(item);
     } else {
@@ -137,7 +129,8 @@ void Reader::items(const Key& key, std::size_t /*count*/, const std::function<vo
         return;
     }
     if (value->items.empty() && key.required)
-        report(key.name, value->place, fmt::format("the scene has no '{}'", key.name), std::string(key.doc));
+        report(key.name, value->place, fmt::format("the scene has no '{}'", key.name),
+               fmt::format("write a table [{}]", key.name));
     resize(value->items.size());
     for (std::size_t i = 0; i < value->items.size(); ++i) {
         const Node& one = value->items[i];

@@ -146,8 +146,8 @@ struct AdaptiveStep {
 
 struct Solver {
     Integrator integrator = Integrator::adaptive_imex;
-    double step = 0.005;     ///< s; divides the frame
-    double threshold = 0.2;  ///< on κ of (7): explicit where κ ≤ threshold
+    double step = 1.0 / 240;  ///< s; divides the frame; default: the largest such up to 1/240
+    double threshold = 0.2;   ///< on κ of (7): explicit where κ ≤ threshold
     Preconditioner preconditioner = Preconditioner::constrained_block;
     double tolerance = 1e-3;       ///< relative preconditioned residual
     int max_iterations = 2000;     ///< of CG, per component

@@ -125,27 +125,25 @@ private:
 };
 
 /// Walks the schema of a table; `header` is its path with dots, `list` whether it may be one of several.
-void collect(const json& schema, const std::string& header, bool list, std::string_view key,
-             std::vector<std::string>& found) {
+void collect(const json& schema, const std::string& header, bool list,
+             std::map<std::string, std::vector<std::string>>& found) {
     if (schema.contains("anyOf")) {
         const json& forms = schema["anyOf"];
         const bool many =
             forms.back().value("type", "") == "array" && forms.back()["items"].contains("properties");
         for (const json& form : forms) {
-            if (form.contains("properties")) collect(form, header, many, key, found);
+            if (form.contains("properties")) collect(form, header, many, found);
         }
     }
     if (schema.contains("items") && schema["items"].contains("properties"))
-        collect(schema["items"], header, true, key, found);
+        collect(schema["items"], header, true, found);
     if (!schema.contains("properties")) return;
-    if (schema["properties"].contains(std::string(key))) {
-        if (header.empty())
-            found.push_back("the top of the file");
-        else
-            found.push_back((list ? "[[" : "[") + header + (list ? "]]" : "]"));
+    std::string shown = "the top of the file";
+    if (!header.empty()) shown = list ? "[[" + header + "]]" : "[" + header + "]";
+    for (const auto& [name, property] : schema["properties"].items()) {
+        found[name].push_back(shown);
+        collect(property, header.empty() ? name : header + "." + name, false, found);
     }
-    for (const auto& [name, property] : schema["properties"].items())
-        collect(property, header.empty() ? name : header + "." + name, false, key, found);
 }
 
 }  // namespace
@@ -160,9 +158,9 @@ json scene_schema() {
     return schema;
 }
 
-std::vector<std::string> tables_with_key(std::string_view key) {
-    std::vector<std::string> found;
-    collect(scene_schema(), "", false, key, found);
+std::map<std::string, std::vector<std::string>> tables_of_keys() {
+    std::map<std::string, std::vector<std::string>> found;
+    collect(scene_schema(), "", false, found);
     return found;
 }
 

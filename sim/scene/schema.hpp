@@ -1,8 +1,8 @@
 #pragma once
 
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace unravel {
@@ -11,7 +11,7 @@ namespace unravel {
 /// by the same descriptions that read the file. What concerns several keys at once is load_scene()'s alone.
 nlohmann::json scene_schema();
 
-/// The headers under which a key of this name may stand: "[solver]", "[[cloth.pin]]", "the top of the file".
-std::vector<std::string> tables_with_key(std::string_view key);
+/// For each key the headers under which it may stand: "[solver]", "[[cloth.pin]]", "the top of the file".
+std::map<std::string, std::vector<std::string>> tables_of_keys();
 
 }  // namespace unravel

@@ -1,0 +1,134 @@
+#include "sim/scene/schema.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "sim/scene/document.hpp"
+
+using namespace unravel;
+using nlohmann::json;
+
+namespace {
+
+json to_json(const Node& node) {
+    json out;
+    switch (node.kind) {
+        case Node::Kind::flag:
+            return node.flag;
+        case Node::Kind::integer:
+            return node.integer;
+        case Node::Kind::number:
+            return node.number;
+        case Node::Kind::text:
+            return node.text;
+        case Node::Kind::date:
+            return nullptr;
+        case Node::Kind::list:
+            out = json::array();
+            for (const Node& item : node.items) out.push_back(to_json(item));
+            return out;
+        case Node::Kind::table:
+            out = json::object();
+            for (const Entry& entry : node.entries) out[entry.key] = to_json(entry.value);
+            return out;
+    }
+    return out;
+}
+
+bool is_type(const json& value, const std::string& type) {
+    if (type == "number") return value.is_number();
+    if (type == "integer") return value.is_number_integer();
+    if (type == "string") return value.is_string();
+    if (type == "boolean") return value.is_boolean();
+    if (type == "array") return value.is_array();
+    return type == "object" && value.is_object();
+}
+
+/// The part of JSON schema that ours uses.
+bool valid(const json& value, const json& schema) {
+    const auto fits = [&](const json& form) { return valid(value, form); };
+    if (schema.contains("anyOf") && std::none_of(schema["anyOf"].begin(), schema["anyOf"].end(), fits))
+        return false;
+    if (schema.contains("oneOf") && std::count_if(schema["oneOf"].begin(), schema["oneOf"].end(), fits) != 1)
+        return false;
+    if (schema.contains("type") && !is_type(value, schema["type"])) return false;
+    if (schema.contains("enum") &&
+        std::find(schema["enum"].begin(), schema["enum"].end(), value) == schema["enum"].end())
+        return false;
+    if (schema.contains("minimum") && value < schema["minimum"]) return false;
+    if (schema.contains("exclusiveMinimum") && value <= schema["exclusiveMinimum"]) return false;
+    if (schema.contains("maximum") && value > schema["maximum"]) return false;
+    if (schema.contains("minItems") && value.size() < schema["minItems"]) return false;
+    if (schema.contains("maxItems") && value.size() > schema["maxItems"]) return false;
+    if (schema.contains("minLength") && value.get<std::string>().size() < schema["minLength"]) return false;
+    if (schema.contains("pattern") &&
+        !std::regex_search(value.get<std::string>(), std::regex(schema["pattern"].get<std::string>())))
+        return false;
+    if (schema.contains("required")) {
+        for (const json& key : schema["required"])
+            if (!value.contains(key.get<std::string>())) return false;
+    }
+    if (schema.contains("items")) {
+        for (const json& item : value)
+            if (!valid(item, schema["items"])) return false;
+    }
+    if (schema.contains("properties")) {
+        for (const auto& [key, inner] : value.items())
+            if (!schema["properties"].contains(key) || !valid(inner, schema["properties"][key])) return false;
+    }
+    return true;
+}
+
+bool valid_text(const std::string& toml) {
+    Node root;
+    std::vector<SceneProblem> problems;
+    REQUIRE(parse_document(toml, root, problems));
+    return valid(to_json(root), scene_schema());
+}
+
+std::string read(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace
+
+TEST_CASE("every scene that ships is valid by the schema", "[scene]") {
+    const std::filesystem::path root = UNRAVEL_SOURCE_DIR;
+    CHECK(valid_text(read(root / "tests/scenes/complete.toml")));
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "scenes")) {
+        if (entry.path().extension() != ".toml") continue;
+        INFO(entry.path().filename());
+        CHECK(valid_text(read(entry.path())));
+    }
+}
+
+TEST_CASE("the schema refuses what the loader refuses in a single value", "[scene]") {
+    for (const char* name :
+         {"no_cloth", "empty_cloth_list", "unknown_keys", "wrong_types", "absurd", "bad_choices",
+          "bad_fraction", "empty_clip", "look", "solids", "tables_and_lists", "wind", "dates"}) {
+        INFO(name);
+        CHECK(!valid_text(read(std::string(UNRAVEL_SOURCE_DIR "/tests/scenes_bad/") + name + ".toml")));
+    }
+}
+
+TEST_CASE("the schema tells in which tables a key may stand", "[scene]") {
+    using Tables = std::vector<std::string>;
+    const std::map<std::string, Tables> tables = tables_of_keys();
+    CHECK(tables.at("threshold") == Tables{"[solver]"});
+    CHECK(tables.at("gravity") == Tables{"the top of the file"});
+    CHECK(tables.at("max_strain") == Tables{"[solver.adaptive]"});
+    CHECK(tables.at("release") == Tables{"[[cloth.pin]]"});
+    CHECK(!tables.contains("nothing"));
+}
+
+TEST_CASE("the schema carries defaults and meanings", "[scene]") {
+    const json schema = scene_schema();
+    CHECK(schema["properties"]["clip"]["properties"]["fps"]["default"] == 30);
+    CHECK(schema["properties"]["solver"]["properties"]["integrator"]["default"] == "adaptive-imex");
+    CHECK(!schema["properties"]["gravity"]["description"].get<std::string>().empty());
+    CHECK(schema["required"] == json{"cloth"});
+}

@@ -1,0 +1,137 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "sim/scene/document.hpp"
+#include "sim/scene/load.hpp"
+#include "sim/scene/schema.hpp"
+
+using namespace unravel;
+
+namespace {
+
+const std::filesystem::path complete = UNRAVEL_SOURCE_DIR "/tests/scenes/complete.toml";
+
+std::vector<std::filesystem::path> scenes() {
+    std::vector<std::filesystem::path> out{complete};
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(UNRAVEL_SOURCE_DIR "/scenes")) {
+        if (entry.path().extension() == ".toml") out.push_back(entry.path());
+    }
+    return out;
+}
+
+/// Every key under a node as a path without numbers: "cloth.pin.release".
+void keys_of(const Node& node, const std::string& path, std::set<std::string>& out) {
+    for (const Node& item : node.items) keys_of(item, path, out);
+    for (const Entry& entry : node.entries) {
+        const std::string key = path.empty() ? entry.key : path + "." + entry.key;
+        out.insert(key);
+        keys_of(entry.value, key, out);
+    }
+}
+
+/// The same of a schema.
+void keys_of(const nlohmann::json& schema, const std::string& path, std::set<std::string>& out) {
+    if (schema.contains("anyOf"))
+        for (const auto& form : schema["anyOf"]) keys_of(form, path, out);
+    if (schema.contains("items")) keys_of(schema["items"], path, out);
+    if (!schema.contains("properties")) return;
+    for (const auto& [name, property] : schema["properties"].items()) {
+        const std::string key = path.empty() ? name : path + "." + name;
+        out.insert(key);
+        keys_of(property, key, out);
+    }
+}
+
+std::set<std::string> keys_of(const std::string& toml) {
+    Node root;
+    std::vector<SceneProblem> problems;
+    REQUIRE(parse_document(toml, root, problems));
+    std::set<std::string> out;
+    keys_of(root, "", out);
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("a written scene loads back to the same values", "[scene]") {
+    for (const auto& file : scenes()) {
+        INFO(file.filename());
+        const std::string written = scene_to_toml(load_scene(file));
+        const Scene again = parse_scene(written, file.filename(), file.parent_path());
+        CHECK(scene_to_toml(again) == written);
+    }
+}
+
+TEST_CASE("the complete scene has every key there is, and every key is written", "[scene]") {
+    std::set<std::string> known;
+    keys_of(scene_schema(), "", known);
+    const Scene scene = load_scene(complete);
+    CHECK(keys_of(scene.text) == known);
+    CHECK(keys_of(scene_to_toml(scene)) == known);
+}
+
+TEST_CASE("the complete scene's values arrive where they belong", "[scene]") {
+    // Loaded from what was written, so that neither half can drop or swap a value.
+    const Scene scene =
+        parse_scene(scene_to_toml(load_scene(complete)), "complete.toml", complete.parent_path());
+    CHECK(scene.gravity == Vec3(0.5, -8.5, 0.25));
+    CHECK(scene.clip.size == std::array{640, 360});
+    REQUIRE(scene.cloths.size() == 2);
+    const Cloth& cloth = scene.cloths[0];
+    CHECK(cloth.name == "sheet");
+    CHECK(cloth.density == 0.31);
+    CHECK(cloth.rotation == Vec3(10, 20, 30));
+    CHECK(cloth.velocity == Vec3(0.1, -0.2, 0.3));
+    CHECK(cloth.placed_scale == std::array{1.02, 0.97});
+    CHECK(cloth.seed == 4294967295u);
+    CHECK(cloth.material.preset == "denim");
+    CHECK(cloth.material.stretch == std::array{1700.0, 2300.0});
+    CHECK(cloth.material.shear_damping == 0.0031);
+    CHECK(cloth.material.buckling_strain == 0.03);
+    REQUIRE(cloth.regions.size() == 2);
+    CHECK(cloth.regions[0].density == 0.8);
+    CHECK(cloth.regions[0].material->shear == 99.5);
+    CHECK(cloth.regions[0].material->bend == 1e-3);
+    CHECK(cloth.regions[1].material->preset == "silk");
+    CHECK(cloth.regions[1].density == 0.08);
+    REQUIRE(cloth.pins.size() == 6);
+    CHECK(cloth.pins[1].name == "u1v0");
+    CHECK(cloth.pins[1].release == 0.75);
+    REQUIRE(cloth.pins[2].motion.size() == 2);
+    CHECK(cloth.pins[2].motion[1].time == 0.6);
+    CHECK(cloth.pins[2].motion[1].position == Vec3(0.1, 0.2, 0.3));
+    CHECK(cloth.pins[2].motion[1].rotation == Vec3(0, 45, 0));
+    CHECK(cloth.pins[5].disc.radius == 0.06);
+    CHECK(scene.cloths[1].wrap == Wrap::tube);
+    REQUIRE(scene.solids.size() == 3);
+    CHECK(scene.solids[0].size == Vec3(0.6, 0.05, 0.7));
+    CHECK(scene.solids[0].round == 0.01);
+    CHECK(scene.solids[0].offset == 0.006);
+    CHECK(scene.solids[0].color == "#123abc");
+    CHECK(scene.solids[0].pivot == Vec3(0, 0.5, 0));
+    CHECK(scene.solids[1].pivot == Vec3(3, 0.625, 0));
+    CHECK(scene.solids[1].friction.kinetic == 0.8 * 0.6);
+    CHECK(scene.solids[2].name == "capsule2");
+    CHECK(scene.solver.step == 1.0 / 240);
+    CHECK(scene.solver.max_iterations == 321);
+    CHECK(!scene.solver.decompose);
+    CHECK(scene.solver.adaptive->max_strain == 0.07);
+    CHECK(scene.wind->keyframes[1].velocity == Vec3(3, 0, 0));
+    CHECK(scene.wind->gust->seed == 9);
+    CHECK(scene.self_collision->stiffness == 70);
+    REQUIRE(scene.cameras.size() == 2);
+    CHECK(scene.cameras[0].orbit == 30);
+    CHECK(scene.cameras[1].keyframes[1].position == Vec3(2, 2, 3));
+    CHECK(scene.look.cloth[0].weave == Weave::twill);
+    CHECK(scene.look.cloth[0].texture == "weave.png");
+    CHECK(!scene.look.show_ground);
+    CHECK(scene.look.ground_height == -0.25);
+}
+
+TEST_CASE("names with quotes, backslashes and accents survive writing", "[scene]") {
+    Scene scene = parse_scene("[cloth]\n", "a.toml");
+    scene.cloths[0].name = "l'été \\ \"x\" # [y]";
+    CHECK(parse_scene(scene_to_toml(scene), "a.toml").cloths[0].name == scene.cloths[0].name);
+}
