@@ -14,20 +14,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Which κ each family bears explicitly; the one thing in which the one-step schemes differ.
-Splitting splitting_of(const StepOptions& options) {
-    switch (options.integrator) {
-        case Integrator::explicit_:
-            return {infinity, infinity};
-        case Integrator::imex:
-            return {-1.0, infinity};
-        case Integrator::adaptive_imex:
-            return {options.threshold, options.threshold};
-        default:
-            return {-1.0, -1.0};
-    }
-}
-
 // S and z of Eq. (9): pins, then contacts. Depth corrections go into `base`, friction into `impulse`.
 void constrain(const ClothModel& model, const StepView& view, const ClothState& state, double h,
                StepWorkspace& ws) {
@@ -122,6 +108,19 @@ void require_finite(const StepWorkspace& ws, const ClothState& state, double h) 
 }
 
 }  // namespace
+
+Splitting splitting_of(const StepOptions& options) {
+    switch (options.integrator) {
+        case Integrator::explicit_:
+            return {infinity, infinity};
+        case Integrator::imex:
+            return {-1.0, infinity};
+        case Integrator::adaptive_imex:
+            return {options.threshold, options.threshold};
+        default:
+            return {-1.0, -1.0};
+    }
+}
 
 StepOptions step_options(const Solver& solver) {
     StepOptions options;

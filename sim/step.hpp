@@ -27,6 +27,9 @@ struct StepOptions {
 
 StepOptions step_options(const Solver& solver);
 
+/// Which κ each family bears explicitly; the one thing in which the one-step schemes differ.
+Splitting splitting_of(const StepOptions& options);
+
 /// Everything that a step computes on the way; read by inspectors, kept only for its memory.
 struct StepWorkspace {
     Constraints constraints;
@@ -36,8 +39,8 @@ struct StepWorkspace {
     ExtensionForces extension;
     BendLimit bend_limit;
     std::vector<Vec3> bend;                            ///< (bend springs) N
-    std::vector<Vec3> air;        ///< (cells) N; empty without wind
-    SelfCollisionWorkspace self;  ///< empty without self-collision
+    std::vector<Vec3> air;                             ///< (cells) N; empty without wind
+    SelfCollisionWorkspace self;                       ///< empty without self-collision
     std::vector<Vec3> base, impulse, drift, reaction;  ///< (particles); reaction is (constraints)
     std::vector<std::uint32_t> parent;
     Components components, whole;

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "base/whole_file.hpp"
+#include "sim/explicit_limit.hpp"
 #include "sim/scene/load.hpp"
 #include "tool/clip.hpp"
 #include "tool/failure_bundle.hpp"
@@ -58,6 +59,10 @@ int simulate_clip(const Options& options, bool pictures) {
     const RunFolder folder{options.output.empty() ? std::filesystem::path("output") / scene.name
                                                   : options.output};
     ClipOptions clip_options = clip_options_of(options, scene);
+    Simulation simulation = start_simulation(scene);
+    simulation.options.compare_whole = options.compare_whole;
+    if (!options.allow_unstable)
+        require_explicit_stability(simulation.model, simulation.options, scene.solver.step);
     if (pictures) check_clip(scene, folder, clip_options);
 
     const Existing existing = options.force    ? Existing::replace
@@ -69,8 +74,6 @@ int simulate_clip(const Options& options, bool pictures) {
     const int threads = thread_count(options);
     const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(threads + pipeline_threads));
-    Simulation simulation = start_simulation(scene);
-    simulation.options.compare_whole = options.compare_whole;
     const int cached =
         cached_frames(folder, scene, hash, simulation.model.size(), simulation.model.springs.size());
     clip_options.reuse_pictures = existing == Existing::resume;

@@ -9,6 +9,7 @@
 #include "base/file_errors.hpp"
 #include "render/gl_context.hpp"
 #include "render/video.hpp"
+#include "sim/explicit_limit.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/step.hpp"
 #include "tool/options.hpp"
@@ -27,6 +28,8 @@ void add_run_options(CLI::App& command, Options& o) {
         ->check(CLI::Range(1, 1024));
     command.add_flag("--resume", o.resume, "go on from the last frame in the folder");
     command.add_flag("--force", o.force, "start anew in a folder that holds a run");
+    command.add_flag("--allow-unstable", o.allow_unstable,
+                     "simulate although the step is beyond the limit of the springs handled explicitly");
     command.add_flag("--compare-whole", o.compare_whole,
                      "solve each system undecomposed too, and count rvm_whole");
 }
@@ -69,6 +72,8 @@ int guarded(const std::function<int()>& command) {
         // Its text is a list of located problems, to be read by editors as it is.
         say(fmt::format("{}\n", error.what()));
         return exit_scene;
+    } catch (const UnstableStep& error) {
+        return failed(error, exit_scene);
     } catch (const UsageError& error) {
         return failed(error, exit_usage);
     } catch (const FolderError& error) {
@@ -126,6 +131,15 @@ int main(int argc, char** argv) {
         ->add_option("--set", options.overrides,
                      "key=value: another value for a key of the scene; repeatable")
         ->allow_extra_args(false);
+    CLI::App* stability =
+        command("stability", "the hard cases, each with verdict, numbers and picture", command_stability);
+    stability->add_option("cases", options.cases, "names of cases, or parts of them (default: all)");
+    stability->add_flag("--map", options.map, "also the (stiffness, step) map of each integrator");
+    stability->add_option("--scenes", options.scene, "folder of the cases (default: scenes/hard)");
+    stability->add_option("-o", options.output, "folder for the results (default: output/stability)");
+    stability->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
+        ->capture_default_str();
+    stability->add_flag("--pictures,!--no-pictures", options.pictures, "draw each case (default: yes)");
     command("doctor", "which renderers and encoders this machine has, and how to get what is missing",
             command_doctor);
 

@@ -34,6 +34,9 @@ struct Options {
     int crf = -1;
     int samples = 4, supersample = 1;
     bool pictures = true;
+    bool allow_unstable = false;     ///< run although explicit springs are beyond their limit
+    std::vector<std::string> cases;  ///< stability: these only
+    bool map = false;                ///< stability: the (stiffness, step) map
 };
 
 // The commands. Each returns an exit code and throws what main() turns into one.
@@ -41,6 +44,7 @@ int command_run(const Options& options);
 int command_simulate(const Options& options);
 int command_render(const Options& options);
 int command_check(const Options& options);
+int command_stability(const Options& options);
 int command_doctor(const Options& options);
 
 }  // namespace unravel
