@@ -154,4 +154,9 @@ std::vector<std::uint8_t> read_whole_file(const fs::path& file, std::size_t limi
     return bytes;
 }
 
+std::string read_whole_text(const std::filesystem::path& file, std::size_t limit) {
+    const std::vector<std::uint8_t> bytes = read_whole_file(file, limit);
+    return {bytes.begin(), bytes.end()};
+}
+
 }  // namespace unravel

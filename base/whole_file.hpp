@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -59,5 +60,6 @@ int remove_partial_files(const std::filesystem::path& folder);
 /// The content of a regular file. Throws InputError if it can't be read or holds more than `limit` bytes; the
 /// limit is checked before memory is taken.
 std::vector<std::uint8_t> read_whole_file(const std::filesystem::path& file, std::size_t limit);
+std::string read_whole_text(const std::filesystem::path& file, std::size_t limit);
 
 }  // namespace unravel

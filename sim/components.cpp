@@ -80,4 +80,23 @@ void whole_cloth(std::size_t particles, Components& out) {
     out.start = {0, static_cast<std::uint32_t>(particles)};
 }
 
+void lone_particles(std::size_t particles, const Constraints& constraints, Components& out) {
+    out.label.assign(particles, 0);
+    out.order.resize(particles);
+    std::uint32_t lone = 0;
+    for (const Constraint& c : constraints.all()) {
+        if (c.free == 0) out.label[c.particle] = -1;
+    }
+    for (std::uint32_t p = 0; p < particles; ++p) {
+        if (out.label[p] < 0) continue;
+        out.label[p] = static_cast<std::int32_t>(lone);
+        out.order[lone++] = p;
+    }
+    out.start.resize(lone + 1);
+    std::iota(out.start.begin(), out.start.end(), 0u);
+    for (std::uint32_t p = 0; p < particles; ++p) {
+        if (out.label[p] < 0) out.order[lone++] = p;
+    }
+}
+
 }  // namespace unravel

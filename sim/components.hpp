@@ -31,4 +31,7 @@ void find_components(std::size_t particles, std::span<const SpringFamily> famili
 /// The undecomposed system: every particle, constrained or not, in one component.
 void whole_cloth(std::size_t particles, Components& out);
 
+/// What find_components() gives where no spring is implicit: every free particle by itself.
+void lone_particles(std::size_t particles, const Constraints& constraints, Components& out);
+
 }  // namespace unravel

@@ -34,6 +34,10 @@ public:
         index_[c.particle] = static_cast<std::int32_t>(list_.size());
         list_.push_back(c);
     }
+    /// What was prescribed has been done: of the constraints only S remains.
+    void fulfil() {
+        for (Constraint& c : list_) c.z.setZero();
+    }
     const Constraint* find(std::uint32_t particle) const {
         const std::int32_t k = index_[particle];
         return k < 0 ? nullptr : &list_[static_cast<std::size_t>(k)];

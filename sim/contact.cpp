@@ -33,13 +33,13 @@ bool touches_solid(const Solid& solid, const Pose& now, const Pose& next, const 
     const double distance = signed_distance(solid, local, &gradient);
     touch.gap = distance - solid.offset;
     touch.normal = now.linear() * gradient;
-    touch.velocity = (next * local - view.x[p]) / view.h;
+    touch.velocity = (next * local - view.x[p]) / view.step;
     touch.pinched = false;
     if (known) {
         touch.contact = *known;
         return touch.gap < open_share * solid.offset;
     }
-    const double ahead = touch.gap + view.h * touch.normal.dot(view.v[p] - touch.velocity);
+    const double ahead = touch.gap + view.step * touch.normal.dot(view.v[p] - touch.velocity);
     return ahead < -catch_share * solid.offset;
 }
 
@@ -68,7 +68,7 @@ void decide_friction(const Friction& friction, const StepView& view, Touch& touc
     Contact& c = touch.contact;
     if (c.held) return;
     const Vec3 slip = tangential(touch, view.v[c.particle]);
-    const double stopping = friction.kinetic * c.force * view.h / view.mass[c.particle];
+    const double stopping = friction.kinetic * c.force * view.h_force / view.mass[c.particle];
     const bool may_hold = c.sliding == 0 && c.force > 0 && friction.static_ > 0;
     if (may_hold && (stopping >= 2 * slip.norm() || slip.dot(c.slip) < 0)) {
         c.held = true;
@@ -116,7 +116,12 @@ void add_kinetic_friction(const Friction& friction, const StepView& view, const 
     const double slip = c.slip.norm();
     if (slip == 0 || c.force <= 0) return;
     const double most = view.mass[c.particle] * slip;  // friction stops, it never turns round
-    impulse -= std::min(most, friction.kinetic * c.force * view.h) / slip * c.slip;
+    impulse -= std::min(most, friction.kinetic * c.force * view.h_force) / slip * c.slip;
+}
+
+// Velocity that a solid's own gives to v' so that x' follows the solid over the step; 1 for one-step schemes.
+double carry(const StepView& view) {
+    return view.step / view.h;
 }
 
 // Nearly every touching particle touches once: one normal, no linear algebra.
@@ -127,7 +132,7 @@ void constrain_single(const Friction& friction, const StepView& view, Touch& tou
     decide_friction(friction, view, touch);
     Constraint c;
     c.particle = p;
-    c.z = (view.x[p] - base[p]) / view.h + touch.velocity + closing(touch, view.h) - view.v[p];
+    c.z = (view.x[p] - base[p]) / view.h + carry(view) * touch.velocity + closing(touch, view.h) - view.v[p];
     base[p] += depth_correction(touch, view.h);
     if (!touch.contact.held) {
         c.free = 2;
@@ -174,7 +179,7 @@ void constrain_group(std::span<const Solid> solids, const StepView& view, Group 
             close.setZero();
         }
         c.free = 0;
-        c.z = from_base + ride / riders + close - view.v[p];
+        c.z = from_base + carry(view) / riders * ride + close - view.v[p];
         base[p] += depth;
     } else {
         if (N.cols() == 3) N.conservativeResize(3, 2);
@@ -184,8 +189,8 @@ void constrain_group(std::span<const Solid> solids, const StepView& view, Group 
         for (const Touch& touch : group) {
             for (Eigen::Index k = 0; k < N.cols(); ++k) {
                 if (!same_direction(N.col(k), touch.normal)) continue;
-                speed[k] =
-                    std::max(speed[k], touch.normal.dot(from_base + touch.velocity + closing(touch, view.h)));
+                speed[k] = std::max(speed[k], touch.normal.dot(from_base + carry(view) * touch.velocity +
+                                                               closing(touch, view.h)));
                 depth[k] = std::max(depth[k], depth_correction(touch, view.h).norm());
             }
         }
@@ -297,7 +302,8 @@ void judge_touches(std::span<const Solid> solids, const StepView& view, const Co
     for_each_group(touches, [&](Group group) {
         const std::uint32_t p = group.front().contact.particle;
         const Constraint* constraint = constraints.find(p);
-        const Vec3 force = reaction[static_cast<std::size_t>(constraint - constraints.all().data())] / view.h;
+        const Vec3 force =
+            reaction[static_cast<std::size_t>(constraint - constraints.all().data())] / view.h_force;
         const double nothing = pull_share * view.mass[p] * view.gravity;
         along.resize(group.size());
         split_force(group, force, along);

@@ -37,6 +37,8 @@ struct StepView {
     std::span<const double> mass;
     double h = 0;           ///< s, factor of v' in x'
     double gravity = 9.81;  ///< m/s², scale of forces that count as none
+    double step = 0;        ///< s, from x to x'
+    double h_force = 0;     ///< s, factor of forces in the impulses
 };
 
 /// Finds what touches: contacts of the last step that have not opened, and particles that would enter a

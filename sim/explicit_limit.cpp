@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/integrators/scheme.hpp"
+
 namespace unravel {
 
 namespace {
@@ -32,7 +34,7 @@ double larger_eigenvalue(const Eigen::Matrix2d& A) {
 }  // namespace
 
 ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options, double h) {
-    const Splitting splitting = splitting_of(options);
+    const Splitting splitting = scheme_of(options.integrator).splitting(options.threshold);
     const auto share_at = [&](double step, ExplicitLimit* out) {
         std::vector<Eigen::Matrix2d> blocks(model.size(), Eigen::Matrix2d::Zero());
         std::vector<double> kappas(model.size(), 0.0);
@@ -61,7 +63,8 @@ ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options
     ExplicitLimit limit;
     share_at(h, &limit);
     limit.step = std::numeric_limits<double>::infinity();
-    const bool follows_step = std::isfinite(splitting.stretch_threshold) && splitting.stretch_threshold >= 0;
+    const bool follows_step =
+        splitting.stretch_threshold >= 0 && splitting.stretch_threshold < always_explicit;
     if (limit.share == 0 || follows_step) return limit;
     // The share grows with the step: at least linearly, at most as its square.
     double low = h / std::max(1.0, limit.share), high = h * std::max(1.0, 1.0 / limit.share);

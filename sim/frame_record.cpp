@@ -1,7 +1,9 @@
 #include "sim/frame_record.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <string_view>
 #include <type_traits>
 
@@ -14,7 +16,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "records are little-endian");
 
-constexpr std::string_view magic = "UNRAVEL\x02";
+constexpr std::string_view magic = "UNRAVEL\x03";
 // Far above what four million particles need; a damaged length must not become an allocation.
 constexpr std::size_t largest_file = std::size_t{4} << 30;
 
@@ -43,6 +45,12 @@ void members(Archive& archive, Record& r) {
     archive(r.component);
     archive(r.free);
     archive(r.springs);
+    archive.list(r.solves, [&](auto& c) {
+        archive(c.iterations);
+        archive(c.rvm);
+        archive(c.residual);
+        archive(c.converged);
+    });
     archive.list(r.reports, [&](auto& s) {
         archive(s.step);
         archive(s.t);
@@ -216,6 +224,13 @@ FrameRecord read_record(const std::filesystem::path& file, std::uint64_t scene_h
             file, "does not fit the scene's cloth");
     for (const Contact& c : r.state.contacts) {
         require(c.particle < particles, file, "is damaged: a contact names no particle");
+    }
+    const std::int32_t components = static_cast<std::int32_t>(
+        std::min<std::size_t>(r.solves.size(), std::numeric_limits<std::int32_t>::max()));
+    for (const std::int32_t c : r.component) {
+        // Before the first step there is one component and no solve.
+        require(c >= -1 && c < std::max(components, 1), file,
+                "is damaged: a particle's component is not there");
     }
     for (const SpringState s : r.springs) {
         require(s <= SpringState::implicit, file, "is damaged: a spring has no such state");

@@ -6,6 +6,7 @@
 
 #include "sim/forces/extension.hpp"
 #include "sim/report.hpp"
+#include "sim/solve.hpp"
 #include "sim/state.hpp"
 
 namespace unravel {
@@ -18,6 +19,7 @@ struct FrameRecord {
     std::vector<std::int32_t> component;  ///< (particles) of the last step; −1: fully constrained
     std::vector<std::uint8_t> free;       ///< (particles) free directions, 0–3
     std::vector<SpringState> springs;     ///< (stretch and shear springs) of the last step
+    std::vector<ComponentSolve> solves;   ///< (components) of the last step; empty for frame 0
     std::vector<StepReport> reports;      ///< one per step since the frame before; empty for frame 0
 };
 

@@ -185,6 +185,7 @@ StepReport guarded_step(const ClothModel& model, const StepOptions& options, dou
         judgement.failure.step = report.step;
         judgement.failure.t = guard.before.t;
         judgement.failure.h = h;
+        if (!options.measure) return report;
         judgement.judge_finite(report);
         judgement.judge_strain(report, guard.strain);
         judgement.judge_energy(report, guard.energy);

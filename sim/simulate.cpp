@@ -34,6 +34,7 @@ FrameRecord present_record(const Simulation& simulation) {
     for (const Constraint& c : simulation.ws.constraints.all()) record.free[c.particle] = c.free;
     record.component = simulation.ws.components.label;
     record.springs = simulation.ws.extension.state;
+    record.solves = simulation.ws.solves;
     // Before the first step nothing is decomposed yet.
     record.component.resize(n, 0);
     record.springs.resize(simulation.model.springs.size(), SpringState::inactive);

@@ -7,14 +7,13 @@
 #include <limits>
 
 #include "sim/pins.hpp"
+#include "sim/stage.hpp"
 
 namespace unravel {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-// S and z of Eq. (9): pins, then contacts. Depth corrections go into `base`, friction into `impulse`.
+// S and z of Eq. (9): pins, then contacts. Depth corrections go into `base`, friction into `friction`.
 void constrain(const ClothModel& model, const StepView& view, const ClothState& state, double h,
                StepWorkspace& ws) {
     ws.constraints.reset(model.size());
@@ -23,25 +22,7 @@ void constrain(const ClothModel& model, const StepView& view, const ClothState& 
     if (model.solids.empty()) return;
     pose_solids(model.solids, state.t, h, ws.poses);
     find_touches(model.solids, ws.poses, view, state.contacts, ws.constraints, ws.touches_found, ws.touches);
-    constrain_touches(model.solids, view, ws.touches, ws.constraints, ws.base, ws.impulse);
-}
-
-// h f: gravity, springs and bend springs, gathered per particle in a fixed order, on top of what friction
-// left there.
-void add_forces(const ClothModel& model, double h, StepWorkspace& ws) {
-    parallel_each(model.size(), [&](std::size_t p) {
-        Vec3 f = model.mass[p] * model.gravity;
-        const auto gather = [&](const Adjacency& adjacency, const std::vector<Vec3>& force) {
-            for (std::uint32_t k = adjacency.start[p]; k < adjacency.start[p + 1]; ++k) {
-                const auto [s, other] = adjacency.entries[k];
-                f += other > p ? force[s] : Vec3(-force[s]);
-            }
-        };
-        gather(model.spring_adjacency, ws.extension.force);
-        if (model.self_collision) gather(ws.self.adjacency, ws.self.forces.force);
-        gather(model.bend_adjacency, ws.bend);
-        ws.impulse[p] += h * f;
-    });
+    constrain_touches(model.solids, view, ws.touches, ws.constraints, ws.base, ws.friction);
 }
 
 void count_springs(std::span<const SpringFamily> families, StepReport& report) {
@@ -54,38 +35,29 @@ void count_springs(std::span<const SpringFamily> families, StepReport& report) {
     }
 }
 
-void count_solves(const std::vector<ComponentSolve>& solves, StepReport& report) {
-    for (const ComponentSolve& s : solves) {
-        report.cg_iterations += s.iterations;
-        report.cg_iterations_max = std::max(report.cg_iterations_max, s.iterations);
-        report.rvm += s.rvm;
-        report.converged = report.converged && s.converged;
-    }
-}
-
-// The oracle: the very same system, undecomposed.
-void compare_whole(const ClothModel& model, const StepOptions& options,
-                   std::span<const SpringFamily> families, const Load& load, double h,
-                   const ClothState& state, StepWorkspace& ws, StepReport& report) {
-    whole_cloth(model.size(), ws.whole);
-    assemble(families, load, ws.whole, ws.constraints, h, ws.whole_system);
-    solve(ws.whole_system, ws.whole, ws.constraints, state.dv, options.solve, ws.whole_solve,
-          ws.whole_solves);
-    report.rvm_whole = 0;
-    for (const ComponentSolve& s : ws.whole_solves) *report.rvm_whole += s.rvm;
-    for (std::size_t p = 0; p < model.size(); ++p) {
-        report.whole_difference = std::max(report.whole_difference, (ws.whole_solve.x[p] - ws.dv[p]).norm());
-    }
-}
-
 // A Δv − b of every constraint: what holds it.
-void find_reactions(StepWorkspace& ws) {
+void find_reactions(const ClothModel& model, StepWorkspace& ws) {
     const std::span<const Constraint> all = ws.constraints.all();
     ws.reaction.resize(all.size());
     parallel_each(all.size(), [&](std::size_t k) {
-        const std::uint32_t row = ws.system.row_of[all[k].particle];
+        const std::uint32_t p = all[k].particle;
+        if (!ws.coupled) {
+            ws.reaction[k] = model.mass[p] * ws.dv[p] - ws.impulse[p];
+            return;
+        }
+        const std::uint32_t row = ws.system.row_of[p];
         ws.reaction[k] = row_times(ws.system, row, ws.solve.x) - ws.system.b[row];
     });
+}
+
+// Contact makes velocities jump: a touching particle looks back on a past in which it has always moved as it
+// does now.
+void forget_impacts(double h, const StepWorkspace& ws, ClothState& state) {
+    for (const Touch& touch : ws.touches) {
+        const std::uint32_t p = touch.contact.particle;
+        state.v_previous[p] = state.v[p];
+        state.x_previous[p] = state.x[p] - h * state.v[p];
+    }
 }
 
 void require_finite(const StepWorkspace& ws, const ClothState& state, double h) {
@@ -109,23 +81,11 @@ void require_finite(const StepWorkspace& ws, const ClothState& state, double h) 
 
 }  // namespace
 
-Splitting splitting_of(const StepOptions& options) {
-    switch (options.integrator) {
-        case Integrator::explicit_:
-            return {infinity, infinity};
-        case Integrator::imex:
-            return {-1.0, infinity};
-        case Integrator::adaptive_imex:
-            return {options.threshold, options.threshold};
-        default:
-            return {-1.0, -1.0};
-    }
-}
-
 StepOptions step_options(const Solver& solver) {
     StepOptions options;
     options.integrator = solver.integrator;
     options.threshold = solver.threshold;
+    options.activation = solver.activation;
     options.activation_band = solver.activation_band;
     options.solve = {solver.preconditioner, solver.tolerance, solver.max_iterations};
     options.decompose = solver.decompose;
@@ -148,72 +108,55 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
     report.h = h;
     StageTimer timer;
 
-    // Constraints (paper Sec. 4; Baraff & Witkin 1998): S and z
-    ws.base = state.x;
-    ws.impulse.assign(n, Vec3::Zero());
-    const StepView view{state.x, state.v, model.mass, h, model.gravity.norm()};
+    // What the scheme takes for known: x̃, ṽ, and where it takes forces (paper Sec. 3)
+    const Scheme& scheme = scheme_of(options.integrator);
+    Stage& stage = ws.stage;
+    scheme.begin(state, h, stage);
+    timer.lap(report.times.advance);
+
+    // Constraints (Sec. 4; Baraff & Witkin 1998): S and z
+    ws.base = stage.x;
+    ws.friction.assign(n, Vec3::Zero());
+    const StepView view{state.x, stage.v_at, model.mass, stage.h, model.gravity.norm(), h, stage.h_force};
     constrain(model, view, state, h, ws);
     timer.lap(report.times.contact);
 
-    // Effects that the scene calls for
-    const Splitting splitting = splitting_of(options);
-    if (model.self_collision) {
-        self_collide(model, state.x, state.v, h, splitting.stretch_threshold, ws.self);
-        timer.lap(report.times.collision);
-    }
-    if (model.wind) {
-        ws.air.resize(model.air.corners.size());
-        air_forces(model.air, *model.wind, state.t, h, model.mass, state.x, state.v, ws.air);
-        add_air(model.air, ws.air, h, ws.impulse);
-        timer.lap(report.times.air);
-    }
+    // Forces at (x*, v*) (Sec. 2) and the adaptive IMEX splitting (Sec. 3.5)
+    ws.taut.clear();
+    if (options.activation == Activation::predicted) predict_taut(model, state.dv, ws);
+    explicit_forces(model, state.t, h, timer, ws, report);
+    linearise(model, options, h, timer, ws, report);
 
-    // Forces at (x, v) (Sec. 2), and the adaptive IMEX splitting (Sec. 3.5)
-    extension_forces(model.springs, model.mass, state.x, state.v, h, splitting_of(options),
-                     options.activation_band, ws.extension);
-    limit_bend(model.bends, model.mass, h, ws.bend_limit);
-    ws.bend.resize(model.bends.size());
-    bend_forces(model.bends, ws.bend_limit, state.x, ws.bend);
-    add_forces(model, h, ws);
-    ws.drift.resize(n);
-    parallel_each(n, [&](std::size_t p) { ws.drift[p] = ws.base[p] + h * state.v[p] - state.x[p]; });
-    timer.lap(report.times.forces);
-
-    // Independent components (Sec. 5)
-    const SpringFamily all_families[] = {{&model.springs, &model.spring_adjacency, &ws.extension},
-                                         {&ws.self.springs, &ws.self.adjacency, &ws.self.forces}};
-    const std::span<const SpringFamily> families(all_families, model.self_collision ? 2 : 1);
-    if (options.decompose) {
-        find_components(n, families, ws.constraints, ws.parent, ws.components);
-    } else {
-        whole_cloth(n, ws.components);
+    // Independent components (Sec. 5), A Δv = b (Eq. 5) under Sx = Sb, (I − S)x = (I − S)z (Eq. 9)
+    solve_stage(model, options, state.dv, timer, ws, report);
+    if (scheme.iterates) {
+        iterate(model, options, h, timer, ws, report);
+    } else if (options.activation == Activation::resolve) {
+        solve_again_where_taut(model, options, h, timer, ws, report);
     }
-    timer.lap(report.times.graph);
-
-    // A Δv = b (Eq. 5), then Sx = Sb, (I − S)x = (I − S)z (Eq. 9), one component at a time
-    const Load load{model.mass, ws.impulse, ws.drift};
-    assemble(families, load, ws.components, ws.constraints, h, ws.system);
-    timer.lap(report.times.assembly);
-    solve(ws.system, ws.components, ws.constraints, state.dv, options.solve, ws.solve, ws.solves);
-    ws.dv.resize(n);
-    parallel_each(n, [&](std::size_t row) { ws.dv[ws.components.order[row]] = ws.solve.x[row]; });
-    timer.lap(report.times.solve);
-    if (options.compare_whole) compare_whole(model, options, families, load, h, state, ws, report);
-    timer.lap(report.times.compare);
 
     require_finite(ws, state, h);
     if (!model.solids.empty()) {
-        find_reactions(ws);
+        find_reactions(model, ws);
         judge_touches(model.solids, view, ws.constraints, ws.reaction, ws.touches, state.contacts);
     }
     timer.lap(report.times.contact);
 
-    // Δx = h (v + Δv) (Eq. 6), and the contacts' depth corrections that `base` carries
+    // v' = v* + Δv, x' = x̃ + h̃ v' (Eq. 6), and the contacts' depth corrections that `base` carries
+    if (scheme.multistep) {
+        state.x_previous.swap(state.x);
+        state.v_previous.swap(state.v);
+        state.x.resize(n);
+        state.v.resize(n);
+    }
     parallel_each(n, [&](std::size_t p) {
-        state.v[p] += ws.dv[p];
-        state.x[p] = ws.base[p] + h * state.v[p];
+        const Vec3 v_next = stage.v_at[p] + ws.dv[p];
+        state.dv[p] = scheme.iterates ? Vec3(v_next - state.v[p]) : ws.dv[p];
+        state.v[p] = v_next;
+        state.x[p] = ws.base[p] + stage.h * v_next;
     });
-    state.dv = ws.dv;
+    if (scheme.multistep) forget_impacts(h, ws, state);
+    state.h_previous = h;
     ++state.step;
     state.t += h;
     timer.lap(report.times.advance);
@@ -223,11 +166,10 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
     report.largest = ws.components.largest();
     for (const Constraint& c : ws.constraints.all()) ++(c.free == 0 ? report.constrained : report.partly);
     report.contacts = static_cast<std::uint32_t>(ws.touches.size());
-    count_springs(families, report);
+    count_springs(families_of(model, ws), report);
     report.self_contacts = static_cast<std::uint32_t>(ws.self.springs.size());
     report.self_distance = ws.self.least_distance;
-    count_solves(ws.solves, report);
-    measure(model, ws.bend_limit, state, ws.measure, report);
+    if (options.measure) measure(model, ws.bend_limit, state, ws.measure, report);
     timer.lap(report.times.measure);
     return report;
 }

@@ -6,6 +6,7 @@
 #include "sim/components.hpp"
 #include "sim/contact.hpp"
 #include "sim/failure.hpp"
+#include "sim/integrators/scheme.hpp"
 #include "sim/measure.hpp"
 #include "sim/model.hpp"
 #include "sim/report.hpp"
@@ -18,30 +19,33 @@ namespace unravel {
 
 struct StepOptions {
     Integrator integrator = Integrator::adaptive_imex;
-    double threshold = 0.2;        ///< of adaptive IMEX on κ (7)
-    double activation_band = 0.0;  ///< see extension_forces()
+    double threshold = 0.2;                     ///< of adaptive IMEX on κ (7)
+    Activation activation = Activation::start;  ///< when a slack spring becomes implicit
+    double activation_band = 0.0;               ///< see extension_forces()
     SolveOptions solve;
     bool decompose = true;       ///< false: the whole cloth as one system
     bool compare_whole = false;  ///< solve the undecomposed system too and report what it took
+    bool measure = true;         ///< fill the report's strain, lowest point and energies
 };
 
 StepOptions step_options(const Solver& solver);
 
-/// Which κ each family bears explicitly; the one thing in which the one-step schemes differ.
-Splitting splitting_of(const StepOptions& options);
-
 /// Everything that a step computes on the way; read by inspectors, kept only for its memory.
 struct StepWorkspace {
+    Stage stage;
     Constraints constraints;
     SolidPoses poses;
     std::vector<std::vector<Touch>> touches_found;  ///< (chunks of particles)
     std::vector<Touch> touches;
     ExtensionForces extension;
     BendLimit bend_limit;
-    std::vector<Vec3> bend;                            ///< (bend springs) N
-    std::vector<Vec3> air;                             ///< (cells) N; empty without wind
-    SelfCollisionWorkspace self;                       ///< empty without self-collision
-    std::vector<Vec3> base, impulse, drift, reaction;  ///< (particles); reaction is (constraints)
+    std::vector<Vec3> bend;          ///< (bend springs) N
+    std::vector<Vec3> air;           ///< (cells) N; empty without wind
+    SelfCollisionWorkspace self;     ///< empty without self-collision
+    std::vector<std::uint8_t> taut;  ///< (springs) 1: slack at x*, taut at the end; or empty
+    std::vector<Vec3> base, friction, impulse, drift, end, guess;  ///< (particles)
+    std::vector<Vec3> reaction;                                    ///< (constraints)
+    bool coupled = false;  ///< some spring is implicit, so that there is a system
     std::vector<std::uint32_t> parent;
     Components components, whole;
     System system, whole_system;

@@ -115,9 +115,12 @@ public:
         StageTimer timer;
         tbb::parallel_for(std::size_t{0}, options_.styles.size(), [&](std::size_t s) {
             const auto file = folder_.picture(options_.styles[s], passage.record.frame);
-            if (lies_there(passage, s) && take_over(file, passage.pictures[s])) return;
-            if (lies_there(passage, s)) thread_.run([&] { draw(passage, s); });
-            if (options_.keep_pictures) write_png(file, passage.pictures[s]);
+            const bool taken_over = lies_there(passage, s) && take_over(file, passage.pictures[s]);
+            if (lies_there(passage, s) && !taken_over) thread_.run([&] { draw(passage, s); });
+            if (options_.keep_pictures && !taken_over) write_png(file, passage.pictures[s]);
+            if (options_.picture) {
+                options_.picture(options_.styles[s], passage.record.frame, passage.pictures[s]);
+            }
         });
         double spent = 0;
         timer.lap(spent);

@@ -27,6 +27,8 @@ struct ClipOptions {
     int crf = -1;
     bool reuse_pictures = false;  ///< frames whose picture lies there already are read, not drawn
     bool keep_pictures = true;    ///< write PNG frames
+    /// Called with every finished picture, by several threads at once; empty: nobody looks.
+    std::function<void(DrawStyle style, int frame, const Image& picture)> picture;
 };
 
 /// What became of it.

@@ -2,17 +2,36 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "base/whole_file.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/simulate.hpp"
+#include "sim/stats.hpp"
 #include "tool/clip.hpp"
 #include "tool/folder_lock.hpp"
 #include "tool/interrupt.hpp"
 #include "tool/options.hpp"
 #include "tool/progress.hpp"
 #include "tool/render_options.hpp"
+#include "tool/report/page.hpp"
 
 namespace unravel {
+
+namespace {
+
+constexpr std::size_t largest_run_json = std::size_t{64} << 20;
+
+// What the run left about itself; a run that was killed left nothing, and its page says less.
+nlohmann::ordered_json earlier_run(const RunFolder& folder) {
+    nlohmann::ordered_json run{{"status", "unfinished"}};
+    if (!std::filesystem::exists(folder.run_json())) return run;
+    const auto read =
+        nlohmann::ordered_json::parse(read_whole_text(folder.run_json(), largest_run_json), nullptr, false);
+    return read.is_object() ? read : run;
+}
+
+}  // namespace
 
 int command_render(const Options& options) {
     const InterruptWatch watch;
@@ -23,7 +42,7 @@ int command_render(const Options& options) {
     }
     Scene scene = load_scene(cached.scene(), options.overrides);
     const std::uint64_t hash = scene_hash(scene);
-    const ClipOptions clip_options = clip_options_of(options, scene);
+    ClipOptions clip_options = clip_options_of(options, scene);
     const RunFolder folder{options.output.empty() ? cached.root : options.output};
     check_clip(scene, folder, clip_options);
     const FolderLock lock(folder.root);
@@ -42,15 +61,37 @@ int command_render(const Options& options) {
     const int last = std::min(frames - 1, clip_options.last);
     Progress progress(scene.name, last - clip_options.first + 1, options.quiet);
     int next = 0;
+    PageRecorder recorder(model);
+    std::vector<StepReport> reports;
+    const auto read = [&] {
+        FrameRecord record = read_record(cached.record(next++), hash, model.size(), model.springs.size());
+        recorder.see(record);
+        reports.insert(reports.end(), record.reports.begin(), record.reports.end());
+        return record;
+    };
     const FrameSource source = [&]() -> std::optional<FrameRecord> {
         if (next > last || InterruptWatch::requested()) return std::nullopt;
-        return read_record(cached.record(next++), hash, model.size(), model.springs.size());
+        return read();
+    };
+    Previews previews = previews_of(scene, clip_options);
+    clip_options.picture = [&](DrawStyle style, int frame, const Image& picture) {
+        previews.add(style, frame, picture);
     };
     const ClipReport report = make_clip(scene, model, placement, folder, clip_options, source,
                                         [&](int frame) { progress.show(frame - clip_options.first + 1, 0); });
     progress.finish();
+    // The page shows the whole run, also where only some frames were drawn anew.
+    while (next < frames) read();
+    if (std::filesystem::exists(cached.stats()))
+        take_times(read_whole_text(cached.stats(), largest_stats), reports);
+    nlohmann::ordered_json run = earlier_run(cached);
+    run["renderer"] = {{"name", report.renderer}, {"why", report.renderer_summary}};
+    run["encoder"] = report.encoders;
+    write_whole_file(folder.report(), report_page(scene, model, folder, recorder.frames(), reports, previews,
+                                                  page_facts(run)));
     if (!options.quiet) {
         for (const std::string& video : report.videos) fmt::print("  {}\n", (folder.root / video).string());
+        fmt::print("  {}\n", folder.report().string());
     }
     return InterruptWatch::requested() ? exit_interrupted : exit_done;
 }

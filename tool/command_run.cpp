@@ -17,6 +17,7 @@
 #include "tool/options.hpp"
 #include "tool/progress.hpp"
 #include "tool/render_options.hpp"
+#include "tool/report/page.hpp"
 #include "tool/run_json.hpp"
 #include "tool/run_source.hpp"
 
@@ -49,7 +50,7 @@ void print_summary(const Options& options, const RunFolder& folder, const nlohma
         for (const auto& video : json["videos"])
             fmt::print("  {}\n", (folder.root / video.get<std::string>()).string());
     }
-    fmt::print("  {}\n", folder.stats().string());
+    fmt::print("  {}\n  {}\n", folder.stats().string(), folder.report().string());
 }
 
 int simulate_clip(const Options& options, bool pictures) {
@@ -78,6 +79,25 @@ int simulate_clip(const Options& options, bool pictures) {
         cached_frames(folder, scene, hash, simulation.model.size(), simulation.model.springs.size());
     clip_options.reuse_pictures = existing == Existing::resume;
     RunSource source(scene, folder, hash, simulation, cached, threads);
+    PageRecorder recorder(simulation.model);
+    Previews previews = previews_of(scene, clip_options);
+    if (pictures) {
+        clip_options.picture = [&](DrawStyle style, int frame, const Image& picture) {
+            previews.add(style, frame, picture);
+        };
+    }
+    // A run that can't go on ends its clip as one that was stopped does: what it has is kept.
+    std::optional<SimulationError> failure;
+    const FrameSource next = [&]() -> std::optional<FrameRecord> {
+        try {
+            std::optional<FrameRecord> record = source.next();
+            if (record) recorder.see(*record);
+            return record;
+        } catch (const SimulationError& error) {
+            failure = error;
+            return std::nullopt;
+        }
+    };
 
     Progress progress(scene.name, scene.clip.frames(), options.quiet);
     const auto done = [&](int frame) { progress.show(frame + 1, std::min(cached, frame + 1)); };
@@ -90,17 +110,9 @@ int simulate_clip(const Options& options, bool pictures) {
         json["wall_seconds"] =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         write_whole_file(folder.run_json(), json.dump(2) + "\n");
+        write_whole_file(folder.report(), report_page(scene, simulation.model, folder, recorder.frames(),
+                                                      source.reports(), previews, page_facts(json)));
         print_summary(options, folder, json);
-    };
-    // A run that can't go on ends its clip as one that was stopped does: what it has is kept.
-    std::optional<SimulationError> failure;
-    const FrameSource next = [&]() -> std::optional<FrameRecord> {
-        try {
-            return source.next();
-        } catch (const SimulationError& error) {
-            failure = error;
-            return std::nullopt;
-        }
     };
     if (pictures) {
         Placement placement;

@@ -16,11 +16,6 @@ namespace {
 
 constexpr std::size_t largest_scene = 16 << 20;
 
-std::string text_of(const fs::path& file) {
-    const std::vector<std::uint8_t> bytes = read_whole_file(file, largest_scene);
-    return {bytes.begin(), bytes.end()};
-}
-
 // The scene without what only the picture depends on, and without how long it goes on: a clip may be made
 // longer.
 std::string simulated_part(Scene scene) {
@@ -95,7 +90,7 @@ std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing exi
         remove_partial_files(path);
     }
     if (there && existing == Existing::resume && fs::exists(folder.scene())) {
-        const std::string before = text_of(folder.scene());
+        const std::string before = read_whole_text(folder.scene(), largest_scene);
         const Scene earlier = parse_scene(before, folder.scene().string(), folder.root);
         if (simulated_part(earlier) != simulated_part(scene)) {
             throw FolderError(fmt::format(

@@ -18,6 +18,7 @@ struct RunFolder {
     std::filesystem::path scene() const { return root / "scene.toml"; }
     std::filesystem::path run_json() const { return root / "run.json"; }
     std::filesystem::path stats() const { return root / "stats.csv"; }
+    std::filesystem::path report() const { return root / "report.html"; }
     std::filesystem::path cache() const { return root / "cache"; }
     std::filesystem::path frames() const { return root / "frames"; }
     std::filesystem::path failure() const { return root / "failure"; }
@@ -25,6 +26,9 @@ struct RunFolder {
     std::filesystem::path picture(DrawStyle style, int frame) const;
     std::filesystem::path video(DrawStyle style, const std::string& ending) const;
 };
+
+/// No stats.csv is longer; one that is would be no such file.
+inline constexpr std::size_t largest_stats = std::size_t{1} << 30;
 
 const char* style_name(DrawStyle style);
 

@@ -10,7 +10,6 @@ namespace {
 
 // stats.csv is written anew this often, so that it can be looked at while the run goes on.
 constexpr std::chrono::seconds stats_period{5};
-constexpr std::size_t largest_stats = std::size_t{1} << 30;
 
 }  // namespace
 
@@ -23,8 +22,7 @@ RunSource::RunSource(const Scene& scene, const RunFolder& folder, std::uint64_t 
       cached_(cached),
       arena_(threads) {
     if (cached > 0 && std::filesystem::exists(folder.stats())) {
-        const std::vector<std::uint8_t> bytes = read_whole_file(folder.stats(), largest_stats);
-        earlier_stats_.assign(bytes.begin(), bytes.end());
+        earlier_stats_ = read_whole_text(folder.stats(), largest_stats);
     }
 }
 

@@ -14,14 +14,15 @@ void ExtensionForces::resize(std::size_t springs) {
 
 void extension_forces(const ExtensionSprings& springs, std::span<const double> mass, std::span<const Vec3> x,
                       std::span<const Vec3> v, double h, const Splitting& splitting, double band,
-                      ExtensionForces& out) {
+                      ExtensionForces& out, std::span<const std::uint8_t> taut) {
     out.resize(springs.size());
     parallel_each(springs.size(), [&](std::size_t s) {
         const std::uint32_t i = springs.i[s], j = springs.j[s];
         const double rest = springs.rest[s];
         const Vec3 d = x[j] - x[i];
         const double squared = d.squaredNorm();
-        const double reach = (1.0 - band) * rest;
+        const bool will_be_taut = !taut.empty() && taut[s] != 0;
+        const double reach = will_be_taut ? 0.0 : (1.0 - band) * rest;
         if (squared <= reach * reach || squared == 0) {
             out.force[s].setZero();
             out.state[s] = SpringState::inactive;
@@ -44,11 +45,29 @@ void extension_forces(const ExtensionSprings& springs, std::span<const double> m
         if (length > rest) {
             out.force[s] = (stiffness * (length - rest) + damping * u.dot(v[j] - v[i])) * u;
             out.transverse[s] = stiffness * (1.0 - rest / length);
+        } else if (will_be_taut) {
+            out.force[s] = (stiffness * (length - rest) + damping * u.dot(v[j] - v[i])) * u;
+            out.transverse[s] = 0;
         } else {
             out.force[s].setZero();
             out.transverse[s] = 0;
         }
     });
+}
+
+bool mark_taut(const ExtensionSprings& springs, std::span<const Vec3> end, const ExtensionForces& forces,
+               std::vector<std::uint8_t>& taut) {
+    taut.resize(springs.size(), 0);
+    std::vector<std::uint8_t> found(chunk_count(springs.size()), 0);
+    parallel_chunks(springs.size(), [&](std::size_t chunk, std::size_t first, std::size_t last) {
+        for (std::size_t s = first; s < last; ++s) {
+            if (taut[s] || (!forces.state.empty() && forces.state[s] != SpringState::inactive)) continue;
+            const double rest = springs.rest[s];
+            if ((end[springs.j[s]] - end[springs.i[s]]).squaredNorm() <= rest * rest) continue;
+            taut[s] = found[chunk] = 1;
+        }
+    });
+    return std::find(found.begin(), found.end(), 1) != found.end();
 }
 
 Adjacency adjacency_of(std::size_t particles, std::span<const std::uint32_t> i,

@@ -71,10 +71,17 @@ inline double kappa(double h, double inverse_mass, double stiffness, double damp
 
 /// Evaluates all springs at (x, v) for a step of h seconds. `band` ≥ 0: a slack spring with l > (1 − band) L
 /// that is handled implicitly gets its Jacobian (t = 0) but no force, so that a pull can travel through it
-/// within the step.
+/// within the step. `taut`, (springs) or empty, marks slack springs that will be taut when the step ends:
+/// handled implicitly, such a spring gets its Jacobian (t = 0) and the force k_s (l − L) + k_d û·(v_j − v_i)
+/// on its line, a push that the linearised end-of-step force outgrows.
 void extension_forces(const ExtensionSprings& springs, std::span<const double> mass, std::span<const Vec3> x,
                       std::span<const Vec3> v, double h, const Splitting& splitting, double band,
-                      ExtensionForces& out);
+                      ExtensionForces& out, std::span<const std::uint8_t> taut = {});
+
+/// Marks springs longer than L at `end` (particles) among those inactive in `forces`, or, where `forces` is
+/// empty, among all; keeps earlier marks. True if it marked any that was not.
+bool mark_taut(const ExtensionSprings& springs, std::span<const Vec3> end, const ExtensionForces& forces,
+               std::vector<std::uint8_t>& taut);
 
 /// Energy of one spring [J].
 inline double extension_energy(double length, double rest, double stiffness) {

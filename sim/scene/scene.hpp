@@ -136,6 +136,11 @@ struct Solid {
 enum class Integrator { explicit_, implicit, newton, imex, adaptive_imex, bdf2, adaptive_imex2, auto_ };
 enum class Preconditioner { none, diagonal, block, constrained_block, ssor, ic0, multigrid, auto_ };
 
+/// When a spring that is slack at the start of a step begins to act within it: not before the next step
+/// (start), where the last step's motion carried on would make it taut (predicted), or where the solution
+/// does, in a second solve (resolve).
+enum class Activation { start, predicted, resolve };
+
 /// Step size chosen while running; a rejected step is undone exactly.
 struct AdaptiveStep {
     double smallest = 1e-5;   ///< s; the run stops where this would not do
@@ -149,9 +154,10 @@ struct Solver {
     double step = 1.0 / 240;  ///< s; divides the frame; default: the largest such up to 1/240
     double threshold = 0.2;   ///< on κ of (7): explicit where κ ≤ threshold
     Preconditioner preconditioner = Preconditioner::constrained_block;
-    double tolerance = 1e-3;       ///< relative preconditioned residual
-    int max_iterations = 2000;     ///< of CG, per component
-    bool decompose = true;         ///< false: one system over all particles
+    double tolerance = 1e-3;    ///< relative preconditioned residual
+    int max_iterations = 2000;  ///< of CG, per component
+    bool decompose = true;      ///< false: one system over all particles
+    Activation activation = Activation::start;
     double activation_band = 0.0;  ///< springs with l > (1 − band) L get their Jacobian, but no force
     std::optional<AdaptiveStep> adaptive;  ///< absent: every step is `step`
 };

@@ -1,0 +1,19 @@
+#include "sim/integrators/scheme.hpp"
+
+namespace unravel {
+
+// Semi-implicit backward Euler (paper Eq. 5; Baraff & Witkin 1998): one linearisation per step.
+const Scheme backward_euler{"implicit", 1,
+                            [](double) {
+                                return Splitting{always_implicit, always_implicit};
+                            },
+                            begin_euler};
+
+void begin_euler(const ClothState& state, double h, Stage& stage) {
+    stage.h = h;
+    stage.h_force = h;
+    stage.x = stage.x_at = state.x;
+    stage.v = stage.v_at = state.v;
+}
+
+}  // namespace unravel

@@ -1,0 +1,13 @@
+#include "sim/integrators/scheme.hpp"
+
+namespace unravel {
+
+// IMEX Euler (paper Eq. 6) split by the kind of spring: stretch implicit, shear explicit (Eberhardt et al.
+// 2000, Hauth et al. 2002).
+const Scheme fixed_imex{"imex", 1,
+                        [](double) {
+                            return Splitting{always_implicit, always_explicit};
+                        },
+                        begin_euler};
+
+}  // namespace unravel

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/forces/extension.hpp"
+#include "sim/math.hpp"
+#include "sim/scene/scene.hpp"
+#include "sim/state.hpp"
+
+namespace unravel {
+
+/// What every scheme of the paper's Sec. 3 comes down to: one derivative at the end of the step, of weight h̃,
+/// on top of what is known,
+///   x' = x̃ + h̃ v',    M v' = M ṽ + h_f f* + h̃ [K (x' − x*) + D (v' − v*)],
+/// with f* = f(x*, v*), K = ∂f/∂x and D = ∂f/∂v of the implicit springs at (x*, v*). Explicit springs have no
+/// K and D, so that (x*, v*) is also where they are evaluated. Solved for δ = v' − v*:
+///   (M − h̃ D − h̃² K) δ = M (ṽ − v*) + h_f f* + h̃ K (x̃ + h̃ v* − x*).
+/// Backward Euler: x̃ = x* = x, ṽ = v* = v, h̃ = h_f = h, which is Eq. (5).
+struct Stage {
+    double h = 0;                  ///< s, h̃
+    double h_force = 0;            ///< s, h_f; differs from h̃ where f* stands for an old force too
+    std::vector<Vec3> x, v;        ///< (particles) x̃ [m] and ṽ [m/s]
+    std::vector<Vec3> x_at, v_at;  ///< (particles) x* [m] and v* [m/s]
+};
+
+/// A time stepping scheme. A new one is its file, its line in scheme_of(), and its test.
+struct Scheme {
+    const char* name;
+    int order;  ///< of convergence where the forces are smooth
+    /// Which κ (7) each family bears explicitly; `threshold` is the adaptive schemes'.
+    Splitting (*splitting)(double threshold);
+    /// Fills the stage of a step of h seconds.
+    void (*begin)(const ClothState& state, double h, Stage& stage);
+    bool iterates = false;   ///< linearises again until (x*, v*) is the end of the step (Newton)
+    bool multistep = false;  ///< reads the state's x_previous, v_previous and h_previous
+};
+
+/// The scheme of a choice; `auto_` starts out as adaptive IMEX.
+const Scheme& scheme_of(Integrator choice);
+
+extern const Scheme forward_backward_euler, backward_euler, newton_euler, fixed_imex, adaptive_imex, bdf2,
+    sbdf2;
+
+/// Thresholds that put every spring on one side, whatever its κ.
+inline constexpr double always_implicit = -1.0;
+inline constexpr double always_explicit = 1e300;
+
+/// Eq. (5)'s stage, shared by the schemes built on it.
+void begin_euler(const ClothState& state, double h, Stage& stage);
+
+/// The stage of the variable-step two-step backward differentiation formula; see bdf2.cpp.
+void begin_bdf2(const ClothState& state, double h, Stage& stage);
+
+}  // namespace unravel

@@ -1,0 +1,216 @@
+#include "sim/stage.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace unravel {
+
+namespace {
+
+// Newton's method gives up after this many linearisations; a step that needs more is too large.
+constexpr int newton_limit = 30;
+// Halvings of a Newton step that would increase the residual.
+constexpr int newton_halvings = 4;
+
+// Right-hand side of the stage: friction, M (ṽ − v*) and h_f f*, gathered per particle in a fixed order.
+void add_forces(const ClothModel& model, StepWorkspace& ws) {
+    const Stage& stage = ws.stage;
+    ws.impulse.resize(model.size());
+    parallel_each(model.size(), [&](std::size_t p) {
+        Vec3 f = model.mass[p] * model.gravity;
+        const auto gather = [&](const Adjacency& adjacency, const std::vector<Vec3>& force) {
+            for (std::uint32_t k = adjacency.start[p]; k < adjacency.start[p + 1]; ++k) {
+                const auto [s, other] = adjacency.entries[k];
+                f += other > p ? force[s] : Vec3(-force[s]);
+            }
+        };
+        gather(model.spring_adjacency, ws.extension.force);
+        if (model.self_collision) gather(ws.self.adjacency, ws.self.forces.force);
+        gather(model.bend_adjacency, ws.bend);
+        ws.impulse[p] = ws.friction[p] + stage.h_force * f + model.mass[p] * (stage.v[p] - stage.v_at[p]);
+    });
+    if (model.wind) add_air(model.air, ws.air, stage.h_force, ws.impulse);
+}
+
+void count_solves(const std::vector<ComponentSolve>& solves, StepReport& report) {
+    for (const ComponentSolve& s : solves) {
+        report.cg_iterations += s.iterations;
+        report.cg_iterations_max = std::max(report.cg_iterations_max, s.iterations);
+        report.rvm += s.rvm;
+        report.converged = report.converged && s.converged;
+    }
+}
+
+// The oracle: the very same system, undecomposed.
+void compare_whole(const ClothModel& model, const StepOptions& options,
+                   std::span<const SpringFamily> families, const Load& load, std::span<const Vec3> guess,
+                   StepWorkspace& ws, StepReport& report) {
+    report.rvm_whole = report.rvm_whole.value_or(0);
+    if (!ws.coupled) return;
+    whole_cloth(model.size(), ws.whole);
+    assemble(families, load, ws.whole, ws.constraints, ws.stage.h, ws.whole_system);
+    solve(ws.whole_system, ws.whole, ws.constraints, guess, options.solve, ws.whole_solve, ws.whole_solves);
+    for (const ComponentSolve& s : ws.whole_solves) *report.rvm_whole += s.rvm;
+    for (std::size_t p = 0; p < model.size(); ++p) {
+        report.whole_difference = std::max(report.whole_difference, (ws.whole_solve.x[p] - ws.dv[p]).norm());
+    }
+}
+
+bool any_implicit(std::span<const SpringFamily> families) {
+    return std::any_of(families.begin(), families.end(), [](const SpringFamily& family) {
+        const std::vector<SpringState>& state = family.forces->state;
+        return std::find(state.begin(), state.end(), SpringState::implicit) != state.end();
+    });
+}
+
+// With no implicit spring A is M: nothing is coupled, nothing assembled, nothing iterated.
+void solve_uncoupled(const ClothModel& model, StepWorkspace& ws) {
+    lone_particles(model.size(), ws.constraints, ws.components);
+    ws.solves.clear();
+    parallel_each(model.size(), [&](std::size_t p) {
+        const Constraint* c = ws.constraints.find(static_cast<std::uint32_t>(p));
+        const Vec3 dv = ws.impulse[p] / model.mass[p];
+        ws.dv[p] = c ? Vec3(c->S * dv + (c->z - c->S * c->z)) : dv;
+    });
+}
+
+// Where the particles will be if the step goes on like the last one, or as solved: x̃ + h̃ (v* + Δv).
+void predict(std::span<const Vec3> dv, StepWorkspace& ws) {
+    ws.end.resize(dv.size());
+    parallel_each(dv.size(),
+                  [&](std::size_t p) { ws.end[p] = ws.base[p] + ws.stage.h * (ws.stage.v_at[p] + dv[p]); });
+}
+
+// Sum over particles of |S y|²/m, of the stage's right-hand side y: what Newton's method makes small.
+double residual_of(const ClothModel& model, const StepWorkspace& ws) {
+    double sum = 0;
+    for (std::uint32_t p = 0; p < model.size(); ++p) {
+        const Constraint* c = ws.constraints.find(p);
+        sum += (c ? Vec3(c->S * ws.impulse[p]) : ws.impulse[p]).squaredNorm() / model.mass[p];
+    }
+    return sum;
+}
+
+// Σ m |y|²
+double kinetic_of(std::span<const double> mass, std::span<const Vec3> y) {
+    double sum = 0;
+    for (std::size_t p = 0; p < y.size(); ++p) sum += mass[p] * y[p].squaredNorm();
+    return sum;
+}
+
+}  // namespace
+
+Families families_of(const ClothModel& model, const StepWorkspace& ws) {
+    return {{SpringFamily{&model.springs, &model.spring_adjacency, &ws.extension},
+             SpringFamily{&ws.self.springs, &ws.self.adjacency, &ws.self.forces}},
+            model.self_collision ? 2u : 1u};
+}
+
+void explicit_forces(const ClothModel& model, double t, double h, StageTimer& timer, StepWorkspace& ws,
+                     StepReport& report) {
+    const Stage& stage = ws.stage;
+    if (model.wind) {
+        ws.air.resize(model.air.corners.size());
+        air_forces(model.air, *model.wind, t, h, model.mass, stage.x_at, stage.v_at, ws.air);
+        timer.lap(report.times.air);
+    }
+    limit_bend(model.bends, model.mass, h, ws.bend_limit);
+    ws.bend.resize(model.bends.size());
+    bend_forces(model.bends, ws.bend_limit, stage.x_at, ws.bend);
+    timer.lap(report.times.forces);
+}
+
+void linearise(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
+               StepWorkspace& ws, StepReport& report) {
+    const Stage& stage = ws.stage;
+    const Splitting splitting = scheme_of(options.integrator).splitting(options.threshold);
+    if (model.self_collision) {
+        self_collide(model, stage.x_at, stage.v_at, h, splitting.stretch_threshold, ws.self);
+        timer.lap(report.times.collision);
+    }
+    extension_forces(model.springs, model.mass, stage.x_at, stage.v_at, h, splitting, options.activation_band,
+                     ws.extension, ws.taut);
+    add_forces(model, ws);
+    ws.drift.resize(model.size());
+    parallel_each(model.size(),
+                  [&](std::size_t p) { ws.drift[p] = ws.base[p] + stage.h * stage.v_at[p] - stage.x_at[p]; });
+    timer.lap(report.times.forces);
+}
+
+void solve_stage(const ClothModel& model, const StepOptions& options, std::span<const Vec3> guess,
+                 StageTimer& timer, StepWorkspace& ws, StepReport& report) {
+    const std::size_t n = model.size();
+    const Families all = families_of(model, ws);
+    const std::span<const SpringFamily> families = all;
+    const Load load{model.mass, ws.impulse, ws.drift};
+    ws.dv.resize(n);
+    ws.coupled = any_implicit(families);
+    if (!ws.coupled) {
+        solve_uncoupled(model, ws);
+        timer.lap(report.times.solve);
+    } else {
+        if (options.decompose) {
+            find_components(n, families, ws.constraints, ws.parent, ws.components);
+        } else {
+            whole_cloth(n, ws.components);
+        }
+        timer.lap(report.times.graph);
+        assemble(families, load, ws.components, ws.constraints, ws.stage.h, ws.system);
+        timer.lap(report.times.assembly);
+        solve(ws.system, ws.components, ws.constraints, guess, options.solve, ws.solve, ws.solves);
+        parallel_each(n, [&](std::size_t row) { ws.dv[ws.components.order[row]] = ws.solve.x[row]; });
+        count_solves(ws.solves, report);
+        timer.lap(report.times.solve);
+    }
+    if (options.compare_whole) compare_whole(model, options, families, load, guess, ws, report);
+    timer.lap(report.times.compare);
+}
+
+void predict_taut(const ClothModel& model, std::span<const Vec3> dv, StepWorkspace& ws) {
+    predict(dv, ws);
+    mark_taut(model.springs, ws.end, {}, ws.taut);
+}
+
+void solve_again_where_taut(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
+                            StepWorkspace& ws, StepReport& report) {
+    predict(ws.dv, ws);
+    if (!mark_taut(model.springs, ws.end, ws.extension, ws.taut)) return;
+    linearise(model, options, h, timer, ws, report);
+    ws.guess = ws.dv;
+    solve_stage(model, options, ws.guess, timer, ws, report);
+}
+
+void iterate(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
+             StepWorkspace& ws, StepReport& report) {
+    Stage& stage = ws.stage;
+    const auto advance = [&](double share) {
+        parallel_each(model.size(), [&](std::size_t p) {
+            stage.v_at[p] += share * ws.dv[p];
+            stage.x_at[p] = ws.base[p] + stage.h * stage.v_at[p];
+        });
+        ws.taut.clear();
+        linearise(model, options, h, timer, ws, report);
+    };
+    const double whole = kinetic_of(model.mass, ws.dv), tolerance = options.solve.tolerance;
+    double before = std::numeric_limits<double>::infinity();
+    for (int k = 1;; ++k) {
+        advance(1.0);
+        ws.constraints.fulfil();
+        double residual = residual_of(model, ws), share = 1.0;
+        for (int halving = 0; residual > before && halving < newton_halvings; ++halving) {
+            share *= 0.5;
+            advance(-share);
+            residual = residual_of(model, ws);
+        }
+        before = residual;
+        ws.guess.assign(model.size(), Vec3::Zero());
+        solve_stage(model, options, ws.guess, timer, ws, report);
+        if (!(kinetic_of(model.mass, ws.dv) > tolerance * tolerance * whole)) return;
+        if (k == newton_limit) {
+            report.converged = false;
+            return;
+        }
+    }
+}
+
+}  // namespace unravel

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "sim/step.hpp"
+
+namespace unravel {
+
+/// The linear algebra of one stage (sim/integrators/scheme.hpp): forces at (x*, v*), the system for Δv, and
+/// what some schemes do beyond one solve. All work on the step's workspace.
+
+/// Springs that may be implicit: the cloth's, and those of self-collision where the scene calls for it.
+struct Families {
+    std::array<SpringFamily, 2> list;
+    std::size_t count;
+    operator std::span<const SpringFamily>() const { return {list.data(), count}; }
+};
+Families families_of(const ClothModel& model, const StepWorkspace& ws);
+
+/// Forces that are always explicit, at (x*, v*): bend springs and air, for the step of h seconds from t.
+void explicit_forces(const ClothModel& model, double t, double h, StageTimer& timer, StepWorkspace& ws,
+                     StepReport& report);
+
+/// Forces and Jacobians of the springs at (x*, v*) (Sec. 2) under the scheme's splitting (Sec. 3.5), and the
+/// stage's right-hand side.
+void linearise(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
+               StepWorkspace& ws, StepReport& report);
+
+/// The stage's linear system (Eq. 5): decomposed (Sec. 5), assembled, and solved under the constraints (Eq.
+/// 9) one component at a time, from `guess` (particles) [m/s]. Δv in ws.dv.
+void solve_stage(const ClothModel& model, const StepOptions& options, std::span<const Vec3> guess,
+                 StageTimer& timer, StepWorkspace& ws, StepReport& report);
+
+/// Before the first solve: marks springs that would be taut if the step went on like the last one, of which
+/// `dv` (particles) is Δv [m/s].
+void predict_taut(const ClothModel& model, std::span<const Vec3> dv, StepWorkspace& ws);
+
+/// A second solve where the first over-extends springs that were slack: they join in from the start.
+void solve_again_where_taut(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
+                            StepWorkspace& ws, StepReport& report);
+
+/// Newton's method (Eq. 4): the stage is linearised again at the end of the step that it gave, until what is
+/// added no longer matters. The constraints stay as they are; after the first solve they are met, and only S
+/// remains of them. Always-explicit forces stay those of the start.
+void iterate(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
+             StepWorkspace& ws, StepReport& report);
+
+}  // namespace unravel

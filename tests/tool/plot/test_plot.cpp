@@ -1,0 +1,100 @@
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "tool/plot/plot.hpp"
+#include "tool/plot/ticks.hpp"
+
+using namespace unravel;
+
+namespace {
+
+Plot simple_plot() {
+    Plot plot;
+    plot.x.label = "time [s]";
+    plot.y.label = "error";
+    plot.series.push_back({"a", {{1, 1e-3}, {2, 1e-4}, {3, 1e-5}}});
+    return plot;
+}
+
+// Pixels that are neither grey, white nor black: the series' own ink.
+int colored_pixels(const Image& image) {
+    int count = 0;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const std::uint8_t* p = image.at(x, y);
+            count += std::abs(p[0] - p[2]) > 60;
+        }
+    }
+    return count;
+}
+
+}  // namespace
+
+TEST_CASE("linear ticks lie within the axis, evenly, and are few") {
+    for (const auto& [from, to] : {std::pair{0.0, 1.0}, {-3.0, 17.0}, {0.1, 0.100001}, {-1e6, 1e6}}) {
+        const std::vector<Tick> ticks = linear_ticks(from, to, 6);
+        CAPTURE(from, to);
+        REQUIRE(ticks.size() >= 2);
+        CHECK(ticks.size() <= 14);
+        for (std::size_t k = 0; k < ticks.size(); ++k) {
+            CHECK(ticks[k].value >= from - 1e-6 * (to - from));
+            CHECK(ticks[k].value <= to + 1e-6 * (to - from));
+            // A billionth of the value: what doubles of that size resolve.
+            if (k > 0)
+                CHECK(ticks[k].value - ticks[k - 1].value ==
+                      Approx(ticks[1].value - ticks[0].value).epsilon(1e-4));
+        }
+    }
+}
+
+TEST_CASE("log ticks name every decade of a short axis and some of a long one") {
+    const std::vector<Tick> few = log_ticks(0.5, 200);
+    std::string names;
+    for (const Tick& tick : few) names += tick.label.empty() ? "" : tick.label + " ";
+    CHECK(names == "1 10 100 ");
+    int labelled = 0;
+    for (const Tick& tick : log_ticks(1e-20, 1e20)) labelled += !tick.label.empty();
+    CHECK(labelled >= 4);
+    CHECK(labelled <= 12);
+    CHECK(power_of_ten(-12) == "10⁻¹²");
+}
+
+TEST_CASE("a plot has the size asked for and shows its series") {
+    const Plot plot = simple_plot();
+    const Image image = plot_image(plot, 1);
+    CHECK(image.width == plot.width);
+    CHECK(image.height == plot.height);
+    Plot empty = plot;
+    empty.series.clear();
+    CHECK(colored_pixels(plot_image(empty, 1)) == 0);
+    CHECK(colored_pixels(image) > 100);
+}
+
+TEST_CASE("a point that is not finite is drawn at the upper edge") {
+    Plot plot = simple_plot();
+    plot.series[0].points = {{1, 1}, {2, 2}, {3, INFINITY}};
+    plot.series[0].style = SeriesStyle::points;
+    plot.series[0].label.clear();
+    Plot without = plot;
+    without.series[0].points.pop_back();
+    without.x.from = plot.x.from = 0;
+    without.x.to = plot.x.to = 4;
+    CHECK(colored_pixels(plot_image(plot, 1)) > colored_pixels(plot_image(without, 1)));
+}
+
+TEST_CASE("values a log axis can't hold are left out") {
+    Plot plot = simple_plot();
+    plot.y.log = true;
+    plot.series[0].points.push_back({4, 0});
+    plot.series[0].points.push_back({5, -1});
+    CHECK(plot_svg(plot).find("nan") == std::string::npos);
+    plot.series[0].points.clear();
+    CHECK(plot_svg(plot).find("nan") == std::string::npos);
+}
+
+TEST_CASE("a plot is a whole SVG document") {
+    const std::string svg = plot_svg(simple_plot());
+    CHECK(svg.find("<svg") != std::string::npos);
+    CHECK(svg.find("</svg>") != std::string::npos);
+}

@@ -1,0 +1,180 @@
+#include "tool/report/page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "sim/effects.hpp"
+#include "sim/scene/load.hpp"
+#include "tool/progress.hpp"
+#include "tool/report/page_files.hpp"
+#include "tool/report/series.hpp"
+
+namespace unravel {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string hex(Rgb c) {
+    return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b);
+}
+
+// Three digits are what a residual means.
+double rounded(double value) {
+    return std::stod(fmt::format("{:.3g}", value));
+}
+
+Json frame_json(const PageFrame& frame) {
+    Json json;
+    json["number"] = frame.number;
+    json["time"] = frame.time;
+    if (frame.last_step > 0) json["steps"] = {frame.first_step, frame.last_step};
+    json["components"] = Json::array();
+    for (const ComponentRow& row : frame.components) {
+        json["components"].push_back({row.id, hex(row.color), row.particles, row.boundary, row.springs,
+                                      row.solve.iterations, row.solve.rvm, rounded(row.solve.residual)});
+    }
+    if (frame.rest.count > 0) {
+        json["rest"] = {{"count", frame.rest.count},
+                        {"particles", frame.rest.particles},
+                        {"springs", frame.rest.springs},
+                        {"iterations", frame.rest.iterations},
+                        {"rvm", frame.rest.rvm}};
+    }
+    return json;
+}
+
+// Which pictures go into the page. Too many of them: none where the folder has them as files, else of every
+// k-th frame.
+Json inlined(const Previews& previews, DrawStyle style, bool on_disk) {
+    Json json = Json::object();
+    if (!previews.within_budget() && on_disk) return json;
+    const std::size_t every = previews.bytes() / picture_budget + 1;
+    std::size_t k = 0;
+    for (const auto& [number, text] : previews.of(style)) {
+        if (k++ % every == 0) json[std::to_string(number)] = text;
+    }
+    return json;
+}
+
+std::vector<int> pictures_on_disk(const RunFolder& folder, DrawStyle style,
+                                  const std::vector<PageFrame>& frames) {
+    std::vector<int> numbers;
+    for (const PageFrame& frame : frames) {
+        if (std::filesystem::exists(folder.picture(style, frame.number))) numbers.push_back(frame.number);
+    }
+    return numbers;
+}
+
+// JSON within a <script> must not hold its end.
+std::string script_safe(const Json& json) {
+    std::string text = json.dump();
+    for (std::size_t at = 0; (at = text.find("</", at)) != text.npos; at += 3) text.insert(at + 1, "\\");
+    for (std::size_t at = 0; (at = text.find("<!--", at)) != text.npos; at += 9)
+        text.replace(at, 1, "\\u003c");
+    return text;
+}
+
+std::string html_text(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '<') {
+            out += "&lt;";
+        } else if (c == '&') {
+            out += "&amp;";
+        } else {
+            out += c;
+        }
+    }
+    return out;
+}
+
+// {{name}} → value, in one pass, so that a value may hold anything.
+std::string fill(std::string_view page, const std::vector<std::pair<std::string, std::string_view>>& values) {
+    std::string out;
+    for (;;) {
+        const std::size_t open = page.find("{{"), close = page.find("}}", open);
+        out += page.substr(0, open);
+        if (open == page.npos || close == page.npos) return out;
+        const std::string_view name = page.substr(open + 2, close - open - 2);
+        for (const auto& [key, value] : values) {
+            if (key == name) out += value;
+        }
+        page.remove_prefix(close + 2);
+    }
+}
+
+}  // namespace
+
+PageFacts page_facts(const Json& run) {
+    PageFacts facts;
+    facts.status = run.value("status", "unknown");
+    const auto say = [&](const char* name, std::string text) {
+        if (!text.empty()) facts.made.emplace_back(name, std::move(text));
+    };
+    say("version", "Unravel " + run.value("version", ""));
+    say("host", run.value("host", ""));
+    if (run.contains("threads")) say("threads", std::to_string(run["threads"].get<int>()));
+    if (run.contains("renderer")) {
+        say("renderer", run["renderer"].value("name", ""));
+        say("why this one", run["renderer"].value("why", ""));
+    }
+    if (run.contains("encoder")) {
+        for (const Json& line : run["encoder"]) say("encoder", line.get<std::string>());
+    }
+    if (run.contains("wall_seconds")) say("time in all", duration_text(run["wall_seconds"].get<double>()));
+    return facts;
+}
+
+Previews previews_of(const Scene& scene, const ClipOptions& options) {
+    const int frames = std::max(0, options.last - options.first + 1);
+    return Previews(scene.clip.size[0], scene.clip.size[1], frames * static_cast<int>(options.styles.size()),
+                    picture_budget);
+}
+
+std::string report_page(const Scene& scene, const ClothModel& model, const RunFolder& folder,
+                        const std::vector<PageFrame>& frames, std::span<const StepReport> reports,
+                        const Previews& previews, const PageFacts& facts) {
+    Json data, pictures;
+    data["views"] = Json::array();
+    for (const DrawStyle style : {DrawStyle::textured, DrawStyle::components}) {
+        const std::vector<int> files = pictures_on_disk(folder, style, frames);
+        Json inside = inlined(previews, style, !files.empty());
+        if (files.empty() && inside.empty()) continue;
+        Json view{{"name", style_name(style)}};
+        if (!files.empty()) {
+            view["files"] = fmt::format("frames/{}_", style_name(style));
+            view["numbers"] = files;
+        }
+        data["views"].push_back(view);
+        pictures[style_name(style)] = std::move(inside);
+    }
+    data["size"] = scene.clip.size;
+    data["fps"] = scene.clip.fps;
+    data["frames"] = Json::array();
+    for (const PageFrame& frame : frames) data["frames"].push_back(frame_json(frame));
+    data["series"] = page_series(frames, reports, model);
+    data["summary"] = page_summary(scene, model, frames, reports, facts.status);
+    data["warnings"] = page_warnings(scene, frames, reports, facts.status);
+    data["effects"] = Json::array();
+    for (const Effect& effect : list_effects(scene)) {
+        data["effects"].push_back({{"name", effect.name}, {"on", effect.on}, {"because", effect.because}});
+    }
+    data["scene"] = scene_to_toml(scene);
+    data["made"] = facts.made;
+
+    const std::string title = html_text(scene.name), data_text = script_safe(data);
+    const std::string pictures_text = script_safe(pictures.is_null() ? Json::object() : pictures);
+    return fill(page_file("report.html"), {{"title", title},
+                                           {"library_style", page_file("dygraph.min.css")},
+                                           {"style", page_file("report.css")},
+                                           {"data", data_text},
+                                           {"pictures", pictures_text},
+                                           {"library", page_file("dygraph.min.js")},
+                                           {"plots", page_file("report_plots.js")},
+                                           {"script", page_file("report.js")}});
+}
+
+}  // namespace unravel

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "render/image.hpp"
+#include "render/renderer.hpp"
+
+namespace unravel {
+
+/// The picture, smaller: every pixel the mean of those it stands for, in linear light. `width` not above the
+/// picture's own; the height keeps the shape.
+Image shrink(const Image& image, int width);
+
+/// A lossy WebP file in memory. Throws std::runtime_error where the encoder fails.
+std::vector<std::uint8_t> encode_webp(const Image& image, float quality = 80);
+
+/// "UklGR…" as data: URIs have it.
+std::string base64(const std::vector<std::uint8_t>& bytes);
+
+/// Small pictures of a clip for its page, made as frames pass by. Their size follows from the number of
+/// frames, so that all together stay within a budget.
+class Previews {
+public:
+    /// `pictures` of width × height are to come; together they may take `budget` bytes.
+    Previews(int width, int height, int pictures, std::size_t budget);
+
+    /// May be called from several threads.
+    void add(DrawStyle style, int frame, const Image& image);
+
+    /// By frame; as base64 WebP.
+    const std::map<int, std::string>& of(DrawStyle style) const;
+    std::size_t bytes() const { return bytes_; }
+    bool within_budget() const { return bytes_ <= budget_; }
+    int width() const { return width_; }
+
+private:
+    int width_;
+    std::size_t budget_, bytes_ = 0;
+    std::mutex mutex_;
+    std::map<int, std::string> textured_, components_;
+};
+
+}  // namespace unravel
