@@ -1,6 +1,7 @@
 #pragma once
 
 #include "sim/frame_record.hpp"
+#include "sim/guard.hpp"
 #include "sim/model.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/step.hpp"
@@ -16,6 +17,7 @@ struct Simulation {
     ClothState state;
     int frame = 0;  ///< the last one reached
     StepWorkspace ws;
+    Guard guard;
 };
 
 /// A simulation at the scene's start, frame 0.
@@ -24,8 +26,8 @@ Simulation start_simulation(const Scene& scene);
 /// Goes on from a record instead of from the start.
 void restore(Simulation& simulation, const FrameRecord& record);
 
-/// What the simulation stands at: its state, and what its last step was; before any step, frame 0.
-FrameRecord first_record(const Simulation& simulation);
+/// What the simulation stands at: its state, and what its last step was; before any step its first frame.
+FrameRecord present_record(const Simulation& simulation);
 
 /// One step on the way to the next frame. Throws SimulationError, after which the simulation stands where it
 /// stood.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/pins.hpp"
 #include "sim/stage.hpp"
@@ -59,14 +60,22 @@ void forget_impacts(double h, const StepWorkspace& ws, ClothState& state) {
     }
 }
 
-void require_finite(const StepWorkspace& ws, std::uint64_t step, double h) {
+void require_finite(const StepWorkspace& ws, const ClothState& state, double h) {
     for (std::uint32_t p = 0; p < ws.dv.size(); ++p) {
         if (ws.dv[p].allFinite()) continue;
+        StepFailure failure;
+        failure.step = state.step + 1;
+        failure.t = state.t;
+        failure.h = h;
+        failure.particles = {p};
+        failure.value = ws.dv[p].norm();
+        failure.limit = std::numeric_limits<double>::max();
+        failure.advice = fmt::format("take a smaller step than {} s, or an implicit integrator", h);
         throw SimulationError(
-            fmt::format("step {} of {} s: particle {} would get a velocity that is not finite; a smaller "
-                        "step or an implicit integrator may hold it",
-                        step, h, p),
-            step, p);
+            fmt::format("step {} (from {:.6g} s, {:.6g} s long): particle {} would get a velocity that is "
+                        "not finite; {}",
+                        failure.step, failure.t, h, p, failure.advice),
+            failure);
     }
 }
 
@@ -126,7 +135,7 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
         solve_again_where_taut(model, options, h, timer, ws, report);
     }
 
-    require_finite(ws, report.step, h);
+    require_finite(ws, state, h);
     if (!model.solids.empty()) {
         find_reactions(model, ws);
         judge_touches(model.solids, view, ws.constraints, ws.reaction, ws.touches, state.contacts);

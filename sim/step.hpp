@@ -1,11 +1,11 @@
 #pragma once
 
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "sim/components.hpp"
 #include "sim/contact.hpp"
+#include "sim/failure.hpp"
 #include "sim/integrators/scheme.hpp"
 #include "sim/measure.hpp"
 #include "sim/model.hpp"
@@ -55,23 +55,11 @@ struct StepWorkspace {
     MeasureWorkspace measure;
 };
 
-/// A step that can't go on: what() says which step, which particle, and why.
-class SimulationError : public std::runtime_error {
-public:
-    SimulationError(const std::string& what, std::uint64_t step, std::uint32_t particle)
-        : std::runtime_error(what), step_(step), particle_(particle) {}
-    std::uint64_t step() const { return step_; }
-    std::uint32_t particle() const { return particle_; }
-
-private:
-    std::uint64_t step_;
-    std::uint32_t particle_;
-};
-
 /// Starts a state from where the scene places the cloth.
 ClothState initial_state(const Placement& placement);
 
-/// Advances the state by h seconds. On SimulationError the state is what it was before.
+/// Advances the state by h seconds. Throws SimulationError where a velocity would not be finite; the state is
+/// then what it was before.
 StepReport step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                 StepWorkspace& ws);
 

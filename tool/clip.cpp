@@ -12,6 +12,7 @@
 #include "render/palette.hpp"
 #include "render/png.hpp"
 #include "render/renderer.hpp"
+#include "tool/picture_stamp.hpp"
 #include "tool/render_thread.hpp"
 #include "tool/view.hpp"
 
@@ -63,6 +64,7 @@ public:
         report_.renderer_summary = context_->summary();
         report_.software = context_->software();
         for (Passage& passage : passages_) free_.push(&passage);
+        claim();
         if (options.video_ending.empty()) return;
         for (const DrawStyle style : options.styles) {
             const std::filesystem::path file = folder.video(style, options.video_ending);
@@ -103,8 +105,7 @@ public:
         thread_.run([&] {
             StageTimer timer;
             for (std::size_t s = 0; s < options_.styles.size(); ++s) {
-                if (!lies_there(passage, s))
-                    renderer_->draw(options_.styles[s], passage.drawing, passage.pictures[s]);
+                if (!lies_there(passage, s)) draw(passage, s);
             }
             timer.lap(report_.draw);
         });
@@ -114,11 +115,9 @@ public:
         StageTimer timer;
         tbb::parallel_for(std::size_t{0}, options_.styles.size(), [&](std::size_t s) {
             const auto file = folder_.picture(options_.styles[s], passage.record.frame);
-            if (lies_there(passage, s)) {
-                passage.pictures[s] = read_png(file);
-            } else if (options_.keep_pictures) {
-                write_png(file, passage.pictures[s]);
-            }
+            const bool taken_over = lies_there(passage, s) && take_over(file, passage.pictures[s]);
+            if (lies_there(passage, s) && !taken_over) thread_.run([&] { draw(passage, s); });
+            if (options_.keep_pictures && !taken_over) write_png(file, passage.pictures[s]);
             if (options_.picture) {
                 options_.picture(options_.styles[s], passage.record.frame, passage.pictures[s]);
             }
@@ -150,9 +149,35 @@ public:
     }
 
 private:
+    void claim() {
+        reusable_.assign(options_.styles.size(), 0);
+        if (!options_.keep_pictures && !options_.reuse_pictures) return;
+        const std::string stamp = picture_stamp(scene_, options_, report_.renderer);
+        const bool whole = options_.first == 0 && options_.last == scene_.clip.frames() - 1;
+        for (std::size_t s = 0; s < options_.styles.size(); ++s) {
+            const bool same = claim_pictures(folder_, options_.styles[s], stamp, whole);
+            reusable_[s] = options_.reuse_pictures && same;
+        }
+    }
+
     bool lies_there(const Passage& passage, std::size_t style) const {
-        return options_.reuse_pictures &&
+        return reusable_[style] != 0 &&
                std::filesystem::exists(folder_.picture(options_.styles[style], passage.record.frame));
+    }
+
+    // False: the picture is damaged, or not of this clip's size.
+    bool take_over(const std::filesystem::path& file, Image& picture) const {
+        try {
+            picture = read_png(file);
+        } catch (const InputError&) {
+            return false;
+        }
+        return picture.width == scene_.clip.size[0] && picture.height == scene_.clip.size[1];
+    }
+
+    // On the renderer's thread.
+    void draw(Passage& passage, std::size_t style) {
+        renderer_->draw(options_.styles[style], passage.drawing, passage.pictures[style]);
     }
 
     const Scene& scene_;
@@ -160,6 +185,7 @@ private:
     const RunFolder& folder_;
     const ClipOptions& options_;
     std::vector<std::array<std::uint32_t, 2>> edges_;
+    std::vector<char> reusable_;  // (styles) pictures that lie there may be taken over
     ComponentColors colors_;
     DrawScene drawn_;
     RenderThread thread_;

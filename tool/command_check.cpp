@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/effects.hpp"
+#include "sim/explicit_limit.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/simulate.hpp"
 #include "tool/options.hpp"
@@ -23,6 +24,7 @@ constexpr double bytes_per_particle = 1900;
 int command_check(const Options& options) {
     const Scene scene = load_scene(options.scene, options.overrides);
     const Simulation simulation = start_simulation(scene);
+    require_explicit_stability(simulation.model, simulation.options, scene.solver.step);
     const std::vector<Effect> effects = list_effects(scene);
     const double n = static_cast<double>(simulation.model.size());
     const long steps = static_cast<long>(simulation.steps_per_frame) * (scene.clip.frames() - 1);

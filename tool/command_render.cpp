@@ -9,6 +9,7 @@
 #include "sim/simulate.hpp"
 #include "sim/stats.hpp"
 #include "tool/clip.hpp"
+#include "tool/folder_lock.hpp"
 #include "tool/interrupt.hpp"
 #include "tool/options.hpp"
 #include "tool/progress.hpp"
@@ -33,6 +34,7 @@ nlohmann::ordered_json earlier_run(const RunFolder& folder) {
 }  // namespace
 
 int command_render(const Options& options) {
+    const InterruptWatch watch;
     const RunFolder cached{options.scene};
     if (!std::filesystem::exists(cached.scene())) {
         throw FolderError(fmt::format(
@@ -43,6 +45,7 @@ int command_render(const Options& options) {
     ClipOptions clip_options = clip_options_of(options, scene);
     const RunFolder folder{options.output.empty() ? cached.root : options.output};
     check_clip(scene, folder, clip_options);
+    const FolderLock lock(folder.root);
     std::filesystem::create_directories(folder.frames());
     remove_partial_files(folder.frames());
 
@@ -57,7 +60,6 @@ int command_render(const Options& options) {
     }
     const int last = std::min(frames - 1, clip_options.last);
     Progress progress(scene.name, last - clip_options.first + 1, options.quiet);
-    const InterruptWatch watch;
     int next = 0;
     PageRecorder recorder(model);
     std::vector<StepReport> reports;

@@ -8,8 +8,11 @@
 #include <thread>
 
 #include "base/whole_file.hpp"
+#include "sim/explicit_limit.hpp"
 #include "sim/scene/load.hpp"
 #include "tool/clip.hpp"
+#include "tool/failure_bundle.hpp"
+#include "tool/folder_lock.hpp"
 #include "tool/interrupt.hpp"
 #include "tool/options.hpp"
 #include "tool/progress.hpp"
@@ -52,22 +55,26 @@ void print_summary(const Options& options, const RunFolder& folder, const nlohma
 
 int simulate_clip(const Options& options, bool pictures) {
     const auto begin = std::chrono::steady_clock::now();
+    const InterruptWatch watch;
     Scene scene = load_scene(options.scene, options.overrides);
     const RunFolder folder{options.output.empty() ? std::filesystem::path("output") / scene.name
                                                   : options.output};
     ClipOptions clip_options = clip_options_of(options, scene);
+    Simulation simulation = start_simulation(scene);
+    simulation.options.compare_whole = options.compare_whole;
+    if (!options.allow_unstable)
+        require_explicit_stability(simulation.model, simulation.options, scene.solver.step);
     if (pictures) check_clip(scene, folder, clip_options);
 
     const Existing existing = options.force    ? Existing::replace
                               : options.resume ? Existing::resume
                                                : Existing::refuse;
+    const FolderLock lock(folder.root);
     const std::uint64_t hash = open_run(folder, scene, existing);
 
     const int threads = thread_count(options);
     const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(threads + pipeline_threads));
-    Simulation simulation = start_simulation(scene);
-    simulation.options.compare_whole = options.compare_whole;
     const int cached =
         cached_frames(folder, scene, hash, simulation.model.size(), simulation.model.springs.size());
     clip_options.reuse_pictures = existing == Existing::resume;
@@ -79,15 +86,21 @@ int simulate_clip(const Options& options, bool pictures) {
             previews.add(style, frame, picture);
         };
     }
-    const auto next = [&] {
-        std::optional<FrameRecord> record = source.next();
-        if (record) recorder.see(*record);
-        return record;
+    // A run that can't go on ends its clip as one that was stopped does: what it has is kept.
+    std::optional<SimulationError> failure;
+    const FrameSource next = [&]() -> std::optional<FrameRecord> {
+        try {
+            std::optional<FrameRecord> record = source.next();
+            if (record) recorder.see(*record);
+            return record;
+        } catch (const SimulationError& error) {
+            failure = error;
+            return std::nullopt;
+        }
     };
 
     Progress progress(scene.name, scene.clip.frames(), options.quiet);
     const auto done = [&](int frame) { progress.show(frame + 1, std::min(cached, frame + 1)); };
-    const InterruptWatch watch;
     std::optional<ClipReport> report;
     const auto conclude = [&](const char* status) {
         progress.finish();
@@ -101,17 +114,17 @@ int simulate_clip(const Options& options, bool pictures) {
                                                       source.reports(), previews, page_facts(json)));
         print_summary(options, folder, json);
     };
-    try {
-        if (pictures) {
-            Placement placement;
-            build_model(scene, placement);
-            report = make_clip(scene, simulation.model, placement, folder, clip_options, next, done);
-        } else {
-            while (const std::optional<FrameRecord> record = next()) done(record->frame);
-        }
-    } catch (const SimulationError&) {
+    if (pictures) {
+        Placement placement;
+        build_model(scene, placement);
+        report = make_clip(scene, simulation.model, placement, folder, clip_options, next, done);
+    } else {
+        while (const std::optional<FrameRecord> record = next()) done(record->frame);
+    }
+    if (failure) {
+        write_failure(folder, scene, hash, simulation, *failure, clip_options);
         conclude("failed");
-        throw;
+        throw *failure;
     }
     conclude(InterruptWatch::requested() ? "interrupted" : "complete");
     return InterruptWatch::requested() ? exit_interrupted : exit_done;

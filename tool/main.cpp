@@ -9,6 +9,7 @@
 #include "base/file_errors.hpp"
 #include "render/gl_context.hpp"
 #include "render/video.hpp"
+#include "sim/explicit_limit.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/step.hpp"
 #include "tool/options.hpp"
@@ -27,6 +28,8 @@ void add_run_options(CLI::App& command, Options& o) {
         ->check(CLI::Range(1, 1024));
     command.add_flag("--resume", o.resume, "go on from the last frame in the folder");
     command.add_flag("--force", o.force, "start anew in a folder that holds a run");
+    command.add_flag("--allow-unstable", o.allow_unstable,
+                     "simulate although the step is beyond the limit of the springs handled explicitly");
     command.add_flag("--compare-whole", o.compare_whole,
                      "solve each system undecomposed too, and count rvm_whole");
 }
@@ -54,16 +57,23 @@ void add_output_options(CLI::App& command, Options& o) {
 }
 
 int guarded(const std::function<int()>& command) {
-    const auto failed = [](const std::exception& error, int code) {
-        fmt::print(stderr, "unravel: {}\n", error.what());
+    // Not fmt::print: it throws where standard error is closed, and the exit code is to be right even then.
+    const auto say = [](const std::string& text) { std::fputs(text.c_str(), stderr); };
+    const auto failed = [&](const std::exception& error, int code) {
+        say(fmt::format("unravel: {}\n", error.what()));
         return code;
     };
     try {
-        return command();
+        const int code = command();
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+            throw OutputError("standard output", "nobody reads it, or its disk is full");
+        return code;
     } catch (const SceneError& error) {
         // Its text is a list of located problems, to be read by editors as it is.
-        fmt::print(stderr, "{}\n", error.what());
+        say(fmt::format("{}\n", error.what()));
         return exit_scene;
+    } catch (const UnstableStep& error) {
+        return failed(error, exit_scene);
     } catch (const UsageError& error) {
         return failed(error, exit_usage);
     } catch (const FolderError& error) {
@@ -75,7 +85,7 @@ int guarded(const std::function<int()>& command) {
     } catch (const SimulationError& error) {
         return failed(error, exit_simulation);
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "unravel: memory ran out; `unravel check` tells what a scene needs\n");
+        say("unravel: memory ran out; `unravel check` tells what a scene needs\n");
         return exit_output;
     } catch (const std::exception& error) {
         return failed(error, exit_output);
@@ -138,6 +148,15 @@ int main(int argc, char** argv) {
         ->add_option("--set", options.overrides,
                      "key=value: another value for a key of the scene; repeatable")
         ->allow_extra_args(false);
+    CLI::App* stability =
+        command("stability", "the hard cases, each with verdict, numbers and picture", command_stability);
+    stability->add_option("cases", options.cases, "names of cases, or parts of them (default: all)");
+    stability->add_flag("--map", options.map, "also the (stiffness, step) map of each integrator");
+    stability->add_option("--scenes", options.scene, "folder of the cases (default: scenes/hard)");
+    stability->add_option("-o", options.output, "folder for the results (default: output/stability)");
+    stability->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
+        ->capture_default_str();
+    stability->add_flag("--pictures,!--no-pictures", options.pictures, "draw each case (default: yes)");
     command("doctor", "which renderers and encoders this machine has, and how to get what is missing",
             command_doctor);
 

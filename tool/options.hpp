@@ -36,6 +36,9 @@ struct Options {
     bool pictures = true;
     double budget = 10;   ///< --budget, minutes
     double error = 1e-3;  ///< --error, of the cloth's diagonal
+    bool allow_unstable = false;     ///< run although explicit springs are beyond their limit
+    std::vector<std::string> cases;  ///< stability: these only
+    bool map = false;                ///< stability: the (stiffness, step) map
 };
 
 // The commands. Each returns an exit code and throws what main() turns into one.
@@ -44,6 +47,7 @@ int command_simulate(const Options& options);
 int command_render(const Options& options);
 int command_accuracy(const Options& options);
 int command_check(const Options& options);
+int command_stability(const Options& options);
 int command_doctor(const Options& options);
 
 }  // namespace unravel

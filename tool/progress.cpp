@@ -38,17 +38,16 @@ void Progress::show(int done, int free) {
             ", {:.0f} ms per frame, {}", 1e3 * each,
             last ? duration_text(elapsed) + " in all" : duration_text(each * (total_ - done)) + " left");
     }
-    if (terminal_) {
-        fmt::print(stderr, "\r\x1b[K{}", line);
-        open_ = true;
-    } else {
-        fmt::print(stderr, "{}\n", line);
-    }
+    // Nobody listening (a closed pipe) is no reason to stop a run, so what could be thrown here is not asked
+    // for.
+    line = terminal_ ? "\r\x1b[K" + line : line + "\n";
+    std::fputs(line.c_str(), stderr);
+    open_ = terminal_;
     std::fflush(stderr);
 }
 
 void Progress::finish() {
-    if (open_) fmt::print(stderr, "\n");
+    if (open_) std::fputs("\n", stderr);
     open_ = false;
 }
 

@@ -76,8 +76,13 @@ std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing exi
     if (there && existing == Existing::replace) {
         // Only what a run writes is removed; anything else in the folder is the user's.
         std::error_code error;
+        // The scene goes last: what is half removed when the program ends still counts as a run.
         for (const fs::path& path : {folder.cache(), folder.frames()}) fs::remove_all(path, error);
-        for (const char* name : {"scene.toml", "run.json", "stats.csv", "report.html"})
+        for (const char* ending : {".mp4", ".webm", ".mkv", ".gif"}) {
+            for (const DrawStyle style : {DrawStyle::textured, DrawStyle::components})
+                fs::remove(folder.video(style, ending), error);
+        }
+        for (const char* name : {"run.json", "stats.csv", "report.html", "scene.toml"})
             fs::remove(folder.root / name, error);
     }
     for (const fs::path& path : {folder.root, folder.cache(), folder.frames()}) {
@@ -94,6 +99,9 @@ std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing exi
                 folder.root.string(), first_difference(simulated_part(earlier), simulated_part(scene))));
         }
     }
+    // What stopped an earlier run is no news of this one.
+    std::error_code error;
+    fs::remove_all(folder.failure(), error);
     write_whole_file(folder.scene(), scene_to_toml(scene));
     return scene_hash(scene);
 }

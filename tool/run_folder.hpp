@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct RunFolder {
     std::filesystem::path report() const { return root / "report.html"; }
     std::filesystem::path cache() const { return root / "cache"; }
     std::filesystem::path frames() const { return root / "frames"; }
+    std::filesystem::path failure() const { return root / "failure"; }
     std::filesystem::path record(int frame) const;
     std::filesystem::path picture(DrawStyle style, int frame) const;
     std::filesystem::path video(DrawStyle style, const std::string& ending) const;

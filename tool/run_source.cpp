@@ -51,7 +51,7 @@ std::optional<FrameRecord> RunSource::next() {
 }
 
 FrameRecord RunSource::simulate() {
-    return frame_ == 0 ? first_record(simulation_) : next_record(simulation_);
+    return frame_ == 0 ? present_record(simulation_) : next_record(simulation_);
 }
 
 void RunSource::write_stats() const {

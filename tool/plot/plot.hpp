@@ -17,7 +17,7 @@ struct PlotPoint {
     double high = std::numeric_limits<double>::quiet_NaN();
     double left = std::numeric_limits<double>::quiet_NaN();  ///< error bar in x
     double right = std::numeric_limits<double>::quiet_NaN();
-    std::string note;  ///< written beside the point
+    std::string note{};  ///< written beside the point
 };
 
 enum class SeriesStyle { line_and_points, line, points, bars };

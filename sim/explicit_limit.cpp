@@ -1,0 +1,95 @@
+#include "sim/explicit_limit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/integrators/scheme.hpp"
+
+namespace unravel {
+
+namespace {
+
+// Direction of a spring on the flat cloth.
+Vec2 flat_direction(const ClothModel& model, std::uint32_t i, std::uint32_t j) {
+    std::size_t c = 0;
+    while (i >= model.cloths[c].first + model.cloths[c].count()) ++c;
+    const ClothPatch& patch = model.cloths[c];
+    const int nu = patch.particles[0], a = static_cast<int>(i - patch.first),
+              b = static_cast<int>(j - patch.first);
+    int du = b % nu - a % nu;
+    if (patch.tube && std::abs(du) > 1) du = du > 0 ? -1 : 1;  // over the seam
+    const Vec2 d(du * patch.size[0] / std::max(patch.cells_u(), 1),
+                 (b / nu - a / nu) * patch.size[1] / std::max(patch.cells_v(), 1));
+    return d.normalized();
+}
+
+double larger_eigenvalue(const Eigen::Matrix2d& A) {
+    const double mean = 0.5 * A.trace(), half = 0.5 * (A(0, 0) - A(1, 1));
+    return mean + std::hypot(half, A(0, 1));
+}
+
+}  // namespace
+
+ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options, double h) {
+    const Splitting splitting = scheme_of(options.integrator).splitting(options.threshold);
+    const auto share_at = [&](double step, ExplicitLimit* out) {
+        std::vector<Eigen::Matrix2d> blocks(model.size(), Eigen::Matrix2d::Zero());
+        std::vector<double> kappas(model.size(), 0.0);
+        for (std::uint32_t s = 0; s < model.springs.size(); ++s) {
+            const std::uint32_t i = model.springs.i[s], j = model.springs.j[s];
+            const double k = model.springs.stiffness[s], d = model.springs.damping[s];
+            const double of_spring = kappa(step, 1.0 / std::min(model.mass[i], model.mass[j]), k, d);
+            const bool stretch = s < model.springs.stretch_count;
+            if (of_spring > (stretch ? splitting.stretch_threshold : splitting.shear_threshold)) continue;
+            const Vec2 u = flat_direction(model, i, j);
+            const Eigen::Matrix2d block = step * (step * k + 2.0 * d) * u * u.transpose();
+            for (const std::uint32_t p : {i, j}) {
+                blocks[p] += block;
+                kappas[p] = std::max(kappas[p], of_spring);
+            }
+        }
+        double share = 0;
+        for (std::uint32_t p = 0; p < model.size(); ++p) {
+            const double here = 0.5 * larger_eigenvalue(blocks[p]) / model.mass[p];
+            if (here <= share) continue;
+            share = here;
+            if (out) *out = {share, p, kappas[p], 0};
+        }
+        return share;
+    };
+    ExplicitLimit limit;
+    share_at(h, &limit);
+    limit.step = std::numeric_limits<double>::infinity();
+    const bool follows_step =
+        splitting.stretch_threshold >= 0 && splitting.stretch_threshold < always_explicit;
+    if (limit.share == 0 || follows_step) return limit;
+    // The share grows with the step: at least linearly, at most as its square.
+    double low = h / std::max(1.0, limit.share), high = h * std::max(1.0, 1.0 / limit.share);
+    for (int k = 0; k < 40; ++k) {
+        const double middle = 0.5 * (low + high);
+        (share_at(middle, nullptr) < 1 ? low : high) = middle;
+    }
+    limit.step = low;
+    return limit;
+}
+
+void require_explicit_stability(const ClothModel& model, const StepOptions& options, double h) {
+    const ExplicitLimit limit = explicit_limit(model, options, h);
+    if (limit.share < 1) return;
+    const std::string fault = fmt::format(
+        "the springs handled explicitly at particle {} reach kappa = {:.3g} (Eq. 7): {:.3g} times what a "
+        "step "
+        "of {:.4g} s bears",
+        limit.particle, limit.kappa, limit.share, h);
+    if (std::isfinite(limit.step)) {
+        throw UnstableStep(fmt::format(
+            "{}; the largest stable step is {:.3g} s, or take solver.integrator = \"adaptive-imex\"", fault,
+            limit.step));
+    }
+    throw UnstableStep(fmt::format("{}; take a solver.threshold of 0.5 or less", fault));
+}
+
+}  // namespace unravel

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "sim/failure.hpp"
+#include "sim/model.hpp"
+#include "sim/step.hpp"
+
+namespace unravel {
+
+/// What every step of a run is held to, so that it stops with the cause named instead of going on with
+/// numbers that mean nothing. All are far beyond what a sound run reaches.
+struct Guard {
+    double strain = 10;        ///< of stretch springs, (l − L)/L
+    double energy = infinite;  ///< J; infinite where the scene puts energy in
+    double residual = 0.1;     ///< relative, of a component that CG did not solve to its tolerance
+    ClothState before;         ///< what a failing step is taken back to; memory kept between steps
+
+    static constexpr double infinite = std::numeric_limits<double>::infinity();
+};
+
+/// The guard of a run that starts at `start`. Strain may reach 10 beyond what the scene placed; energy twice
+/// what the run has to spend: springs, motion, and a fall through the cloth's own size.
+Guard make_guard(const ClothModel& model, const ClothState& start);
+
+/// True where a scene puts energy in while it runs: moving pins or solids, wind. Still air only takes.
+bool takes_energy(const ClothModel& model);
+
+/// step(), taken back where its outcome breaks the guard. On SimulationError the state is what it was before.
+StepReport guarded_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
+                        StepWorkspace& ws, Guard& guard);
+
+}  // namespace unravel

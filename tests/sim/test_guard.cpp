@@ -1,0 +1,93 @@
+#include "sim/guard.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "sim/frame_record.hpp"
+#include "sim/scene/load.hpp"
+#include "sim/simulate.hpp"
+
+using namespace unravel;
+
+namespace {
+
+Simulation hanging_sheet(const std::vector<std::string>& set = {}) {
+    return start_simulation(
+        parse_scene("[clip]\nfps = 25\n[cloth]\nparticles = [6, 6]\nsize = [0.5, 0.5]\n"
+                    "[[cloth.pin]]\ncorner = [\"u0v0\", \"u1v0\"]\n"
+                    "[solver]\nstep = \"1/200\"\n",
+                    "sheet.toml", {}, set));
+}
+
+StepFailure failure_of(Simulation& s) {
+    try {
+        for (int k = 0; k < 400; ++k) guarded_step(s.model, s.options, 1.0 / 200, s.state, s.ws, s.guard);
+    } catch (const SimulationError& error) {
+        // The message is for people who have nothing else.
+        CHECK(std::string(error.what()).find(error.failure().advice) != std::string::npos);
+        CHECK(std::string(error.what()).find("step ") == 0);
+        return error.failure();
+    }
+    FAIL("nothing stopped it");
+    return {};
+}
+
+}  // namespace
+
+TEST_CASE("a failing step leaves the state as it was") {
+    Simulation s = hanging_sheet();
+    for (int k = 0; k < 10; ++k) guarded_step(s.model, s.options, 1.0 / 200, s.state, s.ws, s.guard);
+    s.guard.strain = -2;  // nothing passes
+    const std::uint64_t before = state_hash(s.state);
+    const Vec3 dv = s.state.dv[7];
+    CHECK_THROWS_AS(guarded_step(s.model, s.options, 1.0 / 200, s.state, s.ws, s.guard), SimulationError);
+    CHECK(state_hash(s.state) == before);
+    CHECK(s.state.dv[7] == dv);
+    CHECK(s.state.step == 10);
+}
+
+TEST_CASE("strain beyond the bound names the spring and its ends") {
+    Simulation s = hanging_sheet({"cloth.density=5", "cloth.material.stretch=0.01", "cloth.material.shear=0",
+                                  "cloth.material.bend=0"});
+    const StepFailure failure = failure_of(s);
+    CHECK(failure.criterion == Criterion::strain);
+    CHECK(failure.value > failure.limit);
+    REQUIRE(failure.spring);
+    const std::uint32_t i = s.model.springs.i[*failure.spring], j = s.model.springs.j[*failure.spring];
+    REQUIRE(!failure.particles.empty());
+    CHECK((failure.particles.front() == i || failure.particles.front() == j));
+}
+
+TEST_CASE("energy that comes from nowhere stops an unpinned and a pinned cloth") {
+    Simulation s = hanging_sheet({"solver.integrator=\"explicit\"", "cloth.material.stretch=5000"});
+    const StepFailure failure = failure_of(s);
+    CHECK((failure.criterion == Criterion::energy || failure.criterion == Criterion::strain));
+    Simulation flung = hanging_sheet();
+    flung.guard.strain = Guard::infinite;
+    for (Vec3& v : flung.state.v) v = Vec3(1000, 0, 0);
+    CHECK(failure_of(flung).criterion == Criterion::energy);
+}
+
+TEST_CASE("energy is not judged where the scene puts it in") {
+    CHECK(std::isfinite(hanging_sheet().guard.energy));
+    CHECK(std::isfinite(hanging_sheet({"wind.drag=1"}).guard.energy));  // still air only takes
+    CHECK(std::isinf(hanging_sheet({"wind.velocity=[3,0,0]"}).guard.energy));
+}
+
+TEST_CASE("a number that is none stops the run at its particle") {
+    Simulation s = hanging_sheet();
+    s.state.v[20] = Vec3(0, std::numeric_limits<double>::quiet_NaN(), 0);
+    const StepFailure failure = failure_of(s);
+    CHECK(failure.criterion == Criterion::not_finite);
+    CHECK(failure.step == 1);
+}
+
+TEST_CASE("conjugate gradients that end far from the solution stop the run") {
+    Simulation s = hanging_sheet({"cloth.material.stretch=1e6", "solver.max_iterations=1"});
+    s.guard.energy = s.guard.strain = Guard::infinite;
+    const StepFailure failure = failure_of(s);
+    CHECK(failure.criterion == Criterion::unsolved);
+    CHECK(failure.value > failure.limit);
+    CHECK(!failure.particles.empty());
+}
