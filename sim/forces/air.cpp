@@ -1,6 +1,7 @@
 #include "sim/forces/air.hpp"
 
 #include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 

@@ -69,7 +69,8 @@ TEST_CASE("of the two pushes the weaker acts, and they agree where they cross") 
     CHECK(bend_force(crossing, rest, stiffness, slope) == Approx(slope * (crossing - rest)).epsilon(1e-12));
     for (int k = 0; k < 100; ++k) {
         const double length = rest * k / 100.0;
-        const double arc = 4 * stiffness / (rest * rest) * arc_force(length / rest), linear = slope * (length - rest);
+        const double arc = 4 * stiffness / (rest * rest) * arc_force(length / rest),
+                     linear = slope * (length - rest);
         CHECK(bend_force(length, rest, stiffness, slope) == std::max(arc, linear));
     }
     // A slope too weak for the arc is the weaker one everywhere.

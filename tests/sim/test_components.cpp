@@ -1,7 +1,7 @@
 // The graph search against a naive traversal.
 
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <set>
 
 #include "sim/components.hpp"
@@ -18,7 +18,8 @@ struct Graph {
     Adjacency adjacency;
     Constraints constraints;
 
-    Graph(std::size_t particles, double edge_share, double implicit_share, double constrained_share, std::uint64_t seed)
+    Graph(std::size_t particles, double edge_share, double implicit_share, double constrained_share,
+          std::uint64_t seed)
         : n(particles) {
         std::uint64_t draw = 0;
         const auto below = [&](double share) { return 0.5 * (seeded_uniform(seed, draw++) + 1) < share; };
@@ -54,7 +55,8 @@ struct Graph {
     // Spread labels until nothing changes: slow and obviously right.
     std::vector<std::int32_t> naive() const {
         std::vector<std::int32_t> label(n);
-        for (std::uint32_t p = 0; p < n; ++p) label[p] = constraints.fully(p) ? -1 : static_cast<std::int32_t>(p);
+        for (std::uint32_t p = 0; p < n; ++p)
+            label[p] = constraints.fully(p) ? -1 : static_cast<std::int32_t>(p);
         for (bool changed = true; changed;) {
             changed = false;
             for (std::size_t s = 0; s < springs.size(); ++s) {
@@ -69,7 +71,9 @@ struct Graph {
         roots.erase(-1);
         const std::vector<std::int32_t> order(roots.begin(), roots.end());
         for (std::int32_t& l : label) {
-            if (l >= 0) l = static_cast<std::int32_t>(std::lower_bound(order.begin(), order.end(), l) - order.begin());
+            if (l >= 0)
+                l = static_cast<std::int32_t>(std::lower_bound(order.begin(), order.end(), l) -
+                                              order.begin());
         }
         return label;
     }

@@ -60,7 +60,8 @@ TEST_CASE("extension Jacobians match finite differences of the force, and the er
     Pair pair(1.07);
     const std::vector<Vec3> rest_velocity(2, Vec3::Zero());
     const Mat3 dfdx = position_jacobian(pair.at(pair.x, rest_velocity), 50.0);
-    const Mat3 dfdv = 0.3 * pair.at(pair.x, pair.v).direction[0] * pair.at(pair.x, pair.v).direction[0].transpose();
+    const Mat3 dfdv =
+        0.3 * pair.at(pair.x, pair.v).direction[0] * pair.at(pair.x, pair.v).direction[0].transpose();
     const auto difference = [&](double d, bool velocity) {
         Mat3 J;
         for (int c = 0; c < 3; ++c) {
@@ -74,7 +75,8 @@ TEST_CASE("extension Jacobians match finite differences of the force, and the er
         }
         return J;
     };
-    const double coarse = (difference(1e-2, false) - dfdx).norm(), fine = (difference(5e-3, false) - dfdx).norm();
+    const double coarse = (difference(1e-2, false) - dfdx).norm(),
+                 fine = (difference(5e-3, false) - dfdx).norm();
     CHECK(coarse / fine == Approx(4.0).margin(0.2));  // second-order differences
     CHECK((difference(1e-5, false) - dfdx).norm() < 1e-6 * dfdx.norm());
     CHECK((difference(1e-5, true) - dfdv).norm() < 1e-8);
