@@ -31,7 +31,7 @@ struct Problem {
     Problem(std::size_t particles, double edges, double full, double partly, std::uint64_t s)
         : n(particles), seed(s) {
         for (std::uint32_t a = 0; a < n; ++a) {
-            mass.push_back(0.01 * positive());
+            mass.push_back(0.01 * (0.5 + positive()));
             impulse.push_back(0.1 * vector());
             drift.push_back(0.01 * vector());
             guess.push_back(vector());
@@ -136,10 +136,10 @@ TEST_CASE("constrained CG matches a direct solve of the projected system, for ev
         const std::vector<Vec3> exact = problem.direct();
         for (const Preconditioner kind : block_kinds) {
             std::vector<ComponentSolve> solves;
-            const std::vector<Vec3> x = problem.solved(problem.decomposed(), kind, 1e-12, solves);
+            const std::vector<Vec3> x = problem.solved(problem.decomposed(), kind, 1e-11, solves);
             for (const ComponentSolve& s : solves) CHECK(s.converged);
-            // Velocities are of order one; condition numbers here stay below 1e4.
-            CHECK(difference(x, exact) < 1e-7);
+            // Velocities are of order ten, condition numbers stay below 1e4.
+            CHECK(difference(x, exact) < 1e-6);
         }
     }
 }
