@@ -71,8 +71,10 @@ Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyRefer
     }
     if (axis == CostAxis::time) {
         PlotSeries front{"Pareto front", {}, SeriesStyle::line, true, -1};
-        for (const AccuracyPoint* p : pareto_front(points))
-            front.points.push_back({p->median() / seconds_simulated, p->error});
+        for (const AccuracyPoint* p : pareto_front(points)) {
+            front.points.push_back(plotted(*p, seconds_simulated, axis));
+            front.points.back().left = front.points.back().right = std::numeric_limits<double>::quiet_NaN();
+        }
         plot.series.push_back(std::move(front));
     }
     plot.guides.push_back({reference.floor, true, "floor: the two references differ by this"});
