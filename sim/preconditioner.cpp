@@ -6,6 +6,11 @@ namespace unravel {
 
 namespace {
 
+// Rounding leaves an inverse unsymmetric; conjugate gradients want it otherwise.
+Mat3 symmetric(const Mat3& M) {
+    return 0.5 * (M + M.transpose());
+}
+
 Mat3 inverse_block(Preconditioner kind, const Mat3& C, const Constraint* constraint) {
     if (!constraint) {
         switch (kind) {
@@ -14,7 +19,7 @@ Mat3 inverse_block(Preconditioner kind, const Mat3& C, const Constraint* constra
             case Preconditioner::diagonal:
                 return C.diagonal().cwiseInverse().asDiagonal();
             default:
-                return C.inverse();
+                return symmetric(C.inverse());
         }
     }
     const Mat3& S = constraint->S;
@@ -31,8 +36,7 @@ Mat3 inverse_block(Preconditioner kind, const Mat3& C, const Constraint* constra
     }
     // c = trace/3 keeps the bordered block as well conditioned as C itself.
     const Mat3 bordered = S * C * S + C.trace() / 3.0 * (Mat3::Identity() - S);
-    const Mat3 inverse = S * bordered.inverse() * S;
-    return 0.5 * (inverse + inverse.transpose());
+    return symmetric(S * bordered.inverse() * S);
 }
 
 }  // namespace

@@ -68,7 +68,17 @@ ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
     ComponentSolve result;
 
     const double target = options.tolerance * options.tolerance * rows.measure(A.b);
-    rows.each([&](std::uint32_t row) { r[row] = A.b[row] - row_times(A, row, x); });
+    // The constraint force that A x − b holds outside the free directions is no residual. P would take it
+    // away, but to rounding only, and what is left outgrows a residual that has become small: so it never
+    // gets in.
+    const std::vector<const Constraint*>& constraint = rows.ws.constraint;
+    const auto filter = [&](std::uint32_t row) {
+        if (constraint[row]) r[row] = constraint[row]->S * r[row];
+    };
+    rows.each([&](std::uint32_t row) {
+        r[row] = A.b[row] - row_times(A, row, x);
+        filter(row);
+    });
     result.rvm = rows.count();
     // q = P⁻¹ r; returns r·q
     const auto precondition = [&] {
@@ -96,6 +106,7 @@ ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
         const auto advance = [&](std::uint32_t row) {
             x[row] += alpha * p[row];
             r[row] -= alpha * q[row];
+            filter(row);
         };
         if (swept) rows.each(advance);
         const double rho_next = swept ? precondition() : rows.sum([&](std::uint32_t row) {
@@ -123,6 +134,7 @@ void solve(const System& A, const Components& components, const Constraints& con
     ws.r.resize(n);
     ws.p.resize(n);
     ws.q.resize(n);
+    ws.constraint.resize(n);
     const bool separate = options.preconditioner != Preconditioner::constrained_block;
     build_preconditioner(options.preconditioner, A, components, constraints, ws.preconditioner);
     if (separate)
@@ -139,6 +151,7 @@ void solve(const System& A, const Components& components, const Constraints& con
         const Constraint* c = constraints.find(particle);
         const Vec3 y =
             component_size_one(static_cast<std::uint32_t>(r)) ? Vec3::Zero().eval() : guess[particle];
+        ws.constraint[r] = c;
         ws.x[r] = c ? Vec3(c->S * y + (c->z - c->S * c->z)) : y;
     });
 

@@ -30,9 +30,10 @@ struct ComponentSolve {
 /// Memory of the solver, kept between steps.
 struct SolveWorkspace {
     BlockPreconditioner preconditioner, stopping;
-    SweepPreconditioner sweeps;    ///< for ssor and ic0 only
-    std::vector<Vec3> x, r, p, q;  ///< (rows)
-    std::vector<double> partials;  ///< (chunks of rows)
+    SweepPreconditioner sweeps;                 ///< for ssor and ic0 only
+    std::vector<Vec3> x, r, p, q;               ///< (rows)
+    std::vector<double> partials;               ///< (chunks of rows)
+    std::vector<const Constraint*> constraint;  ///< (rows) null: free
 };
 
 /// Solves Sx = Sb, (I − S)x = (I − S)z (Eq. 9) by modified preconditioned conjugate gradients (Baraff &

@@ -66,7 +66,7 @@ bool any_implicit(std::span<const SpringFamily> families) {
 // With no implicit spring A is M: nothing is coupled, nothing assembled, nothing iterated.
 void solve_uncoupled(const ClothModel& model, StepWorkspace& ws) {
     lone_particles(model.size(), ws.constraints, ws.components);
-    ws.solves.clear();
+    ws.solves.assign(ws.components.count(), {});
     parallel_each(model.size(), [&](std::size_t p) {
         const Constraint* c = ws.constraints.find(static_cast<std::uint32_t>(p));
         const Vec3 dv = ws.impulse[p] / model.mass[p];

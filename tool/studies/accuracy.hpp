@@ -38,6 +38,7 @@ struct AccuracyPoint {
     double median() const;
     double fastest() const;
     double slowest() const;
+    double quantile(double share) const;  ///< of the times, by nearest rank
 };
 
 /// Positions at frames 1, 2, … of a window that starts with the scene. (frames) × (particles) [m]

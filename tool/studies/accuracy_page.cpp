@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <limits>
 
+#include "sim/integrators/scheme.hpp"
 #include "tool/studies/accuracy_verdict.hpp"
 
 namespace unravel {
 
 namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 std::string escaped(const std::string& text) {
     std::string out;
@@ -38,8 +41,8 @@ PlotPoint plotted(const AccuracyPoint& p, double seconds_simulated, CostAxis axi
     }
     point.x = p.median() / seconds_simulated;
     if (p.seconds.size() > 1) {
-        point.left = p.fastest() / seconds_simulated;
-        point.right = p.slowest() / seconds_simulated;
+        point.left = p.quantile(0.25) / seconds_simulated;
+        point.right = p.quantile(0.75) / seconds_simulated;
     }
     return point;
 }
@@ -60,19 +63,34 @@ Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyRefer
         // Explicit steps multiply no rows.
         if (axis == CostAxis::rvm && curve.points.front()->setting.integrator == Integrator::explicit_)
             continue;
+        const AccuracySetting& setting = curve.points.front()->setting;
         PlotSeries series;
-        series.label = curve.method;
-        series.style =
-            curve.points.front()->setting.plain() ? SeriesStyle::line_and_points : SeriesStyle::points;
-        if (curve.order) series.label += fmt::format(" (order {:.1f})", *curve.order);
-        for (const AccuracyPoint* p : curve.points)
-            series.points.push_back(plotted(*p, seconds_simulated, axis));
-        plot.series.push_back(std::move(series));
+        if (setting.plain()) {
+            series.label = curve.method;
+            if (curve.order) series.label += fmt::format(" (order {:.1f})", *curve.order);
+            series.color = static_cast<int>(setting.integrator);
+        } else {
+            // Variants of a method are points of one look; the table tells them apart.
+            series.label = fmt::format("{}, varied", scheme_of(setting.integrator).name);
+            series.style = SeriesStyle::points;
+            series.color = static_cast<int>(setting.integrator);
+        }
+        auto same = std::find_if(plot.series.begin(), plot.series.end(), [&](const PlotSeries& other) {
+            return other.style == series.style && other.label == series.label;
+        });
+        if (same == plot.series.end()) same = plot.series.insert(plot.series.end(), series);
+        for (const AccuracyPoint* p : curve.points) {
+            same->points.push_back(plotted(*p, seconds_simulated, axis));
+            // Bars of points without a line would bury those with one.
+            if (!setting.plain()) same->points.back().left = same->points.back().right = nothing;
+        }
     }
     if (axis == CostAxis::time) {
-        PlotSeries front{"Pareto front", {}, SeriesStyle::line, true, -1};
-        for (const AccuracyPoint* p : pareto_front(points))
-            front.points.push_back({p->median() / seconds_simulated, p->error});
+        PlotSeries front{"Pareto front", {}, SeriesStyle::line, true, static_cast<int>(Integrator::auto_)};
+        for (const AccuracyPoint* p : pareto_front(points)) {
+            front.points.push_back(plotted(*p, seconds_simulated, axis));
+            front.points.back().left = front.points.back().right = nothing;
+        }
         plot.series.push_back(std::move(front));
     }
     plot.guides.push_back({reference.floor, true, "floor: the two references differ by this"});

@@ -58,6 +58,12 @@ double AccuracyPoint::median() const {
 double AccuracyPoint::fastest() const {
     return seconds.empty() ? 0 : *std::min_element(seconds.begin(), seconds.end());
 }
+double AccuracyPoint::quantile(double share) const {
+    if (seconds.empty()) return 0;
+    std::vector<double> sorted = seconds;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[static_cast<std::size_t>(std::lround(share * static_cast<double>(sorted.size() - 1)))];
+}
 double AccuracyPoint::slowest() const {
     return seconds.empty() ? 0 : *std::max_element(seconds.begin(), seconds.end());
 }

@@ -282,6 +282,24 @@ TEST_CASE("explicit_step_is_forward_backward_euler") {
     CHECK(distance(x, integrate(p, options_of(Integrator::explicit_), 100)) < 1e-13);
 }
 
+// Right below the threshold all springs are explicit, and their fastest modes must not grow: extrapolated
+// positions would feed them by 12% a step.
+TEST_CASE("explicit_half_of_the_second_order_pair_is_stable_up_to_its_threshold") {
+    Problem p = chain();
+    const double h = std::sqrt(0.199 * chain_mass / chain_stiffness);
+    for (std::size_t k = 1; k <= chain_masses; ++k) p.start.x[k].x() += k % 2 ? 0.001 : -0.001;
+    StepOptions options = options_of(Integrator::adaptive_imex2);
+    options.threshold = 0.2;
+    ClothState state = initial_state(p.start);
+    StepWorkspace ws;
+    for (int n = 0; n < 2000; ++n) {
+        const StepReport report = step(p.model, options, h, state, ws);
+        REQUIRE(report.implicit == 0);
+    }
+    for (std::size_t k = 1; k <= chain_masses; ++k)
+        CHECK(std::abs(state.x[k].x() - chain_gap * static_cast<double>(k)) < chain_swing);
+}
+
 // Euler's implicit schemes damp; none of them may add energy to a free swing without input.
 TEST_CASE("implicit_schemes_add_no_energy") {
     const Problem p = trampoline();
