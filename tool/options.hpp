@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -34,12 +35,19 @@ struct Options {
     int crf = -1;
     int samples = 4, supersample = 1;
     bool pictures = true;
+    int frame = 0, step = 0;                  ///< inspect: --frame, and --step within it (0: its last)
+    std::int64_t particle = -1, spring = -1;  ///< inspect; −1: none asked for
+    bool quick = false;                       ///< reproduce
+    std::string what;                         ///< schema: scene, run or stats
 };
 
 // The commands. Each returns an exit code and throws what main() turns into one.
 int command_run(const Options& options);
 int command_simulate(const Options& options);
 int command_render(const Options& options);
+int command_inspect(const Options& options);
+int command_reproduce(const Options& options);
+int command_schema(const Options& options);
 int command_check(const Options& options);
 int command_doctor(const Options& options);
 

@@ -49,6 +49,7 @@ struct Plot {
     PlotAxis x, y;
     std::vector<PlotSeries> series;
     std::vector<PlotGuide> guides;
+    double bar_width = 0;  ///< of all bars at one x together, in units of x; 0: from how near they stand
     int width = 720, height = 440;
 };
 
