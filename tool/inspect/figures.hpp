@@ -21,7 +21,7 @@ std::vector<Pattern> step_patterns(const InspectedStep& step);
 /// A picture of the page: its name in file names, and both its formats.
 struct Figure {
     std::string name, caption, svg;
-    Image image;
+    Image image{};
     bool dots_only = false;  ///< the SVG is no larger than the picture, and sharper
 };
 

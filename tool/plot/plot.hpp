@@ -17,31 +17,31 @@ struct PlotPoint {
     double high = std::numeric_limits<double>::quiet_NaN();
     double left = std::numeric_limits<double>::quiet_NaN();  ///< error bar in x
     double right = std::numeric_limits<double>::quiet_NaN();
-    std::string note;  ///< written beside the point
+    std::string note{};  ///< written beside the point
 };
 
 enum class SeriesStyle { line_and_points, line, points, bars };
 
 struct PlotSeries {
-    std::string label;  ///< in the legend; empty: not there
-    std::vector<PlotPoint> points;
+    std::string label{};  ///< in the legend; empty: not there
+    std::vector<PlotPoint> points{};
     SeriesStyle style = SeriesStyle::line_and_points;
     bool dashed = false;
     int color = -1;  ///< of the component palette; −1: the series' own number
 };
 
 struct PlotAxis {
-    std::string label;
+    std::string label{};
     bool log = false;
-    std::optional<double> from, to;       ///< absent: what the points need
-    std::vector<std::string> categories;  ///< in place of numbers: names of x = 0, 1, 2 …
+    std::optional<double> from{}, to{};     ///< absent: what the points need
+    std::vector<std::string> categories{};  ///< in place of numbers: names of x = 0, 1, 2 …
 };
 
 /// A straight line across the plot: a limit, a floor.
 struct PlotGuide {
     double value = 0;
     bool horizontal = true;  ///< at y = value; otherwise at x = value
-    std::string label;
+    std::string label{};
 };
 
 struct Plot {
