@@ -85,6 +85,8 @@ int command_render(const Options& options) {
     if (std::filesystem::exists(cached.stats()))
         take_times(read_whole_text(cached.stats(), largest_stats), reports);
     nlohmann::ordered_json run = earlier_run(cached);
+    // The folder's scene.toml has lost the name that the scene came by.
+    scene.name = run.value("scene", cached.root.filename().string());
     run["renderer"] = {{"name", report.renderer}, {"why", report.renderer_summary}};
     run["encoder"] = report.encoders;
     write_whole_file(folder.report(), report_page(scene, model, folder, recorder.frames(), reports, previews,

@@ -142,6 +142,30 @@ int main(int argc, char** argv) {
         ->add_option("--threads", options.threads, "threads of the simulation (default: one per processor)")
         ->check(CLI::Range(1, 1024));
     accuracy->add_flag("--force", options.force, "forget the points of an earlier study in the folder");
+    CLI::App* inspect =
+        takes(command("inspect", "one frame in depth: components, splitting, the matrix", command_inspect),
+              "RUN_DIR", "folder of the run");
+    inspect->add_option("--frame", options.frame, "number of the frame, 1 or more")->required();
+    inspect
+        ->add_option("--step", options.step, "step on the way to that frame, 1 or more (default: the last)")
+        ->check(CLI::Range(1, 1000000));
+    inspect->add_option("--particle", options.particle, "tell all about this particle")
+        ->check(CLI::NonNegativeNumber);
+    inspect->add_option("--spring", options.spring, "tell all about this stretch or shear spring")
+        ->check(CLI::NonNegativeNumber);
+    inspect->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
+        ->capture_default_str();
+    CLI::App* reproduce =
+        command("reproduce", "every figure and claim of the paper again, beside ours", command_reproduce);
+    reproduce->add_flag("--quick", options.quick,
+                        "small and short: shows that it works, not what it reaches");
+    reproduce->add_option("-o", options.output, "folder of the report (default: output/reproduce)");
+    reproduce->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
+        ->capture_default_str();
+    CLI::App* schema = command("schema", "what files hold, for editors and programs", command_schema);
+    schema->add_option("what", options.what, "scene or run (JSON schemas), stats (columns of stats.csv)")
+        ->check(CLI::IsMember({"scene", "run", "stats"}))
+        ->required();
     CLI::App* check = takes(command("check", "what is wrong with a scene, or what would run", command_check),
                             "SCENE", "scene file");
     check

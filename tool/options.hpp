@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -39,6 +40,10 @@ struct Options {
     bool allow_unstable = false;     ///< run although explicit springs are beyond their limit
     std::vector<std::string> cases;  ///< stability: these only
     bool map = false;                ///< stability: the (stiffness, step) map
+    int frame = 0, step = 0;                  ///< inspect: --frame, and --step within it (0: its last)
+    std::int64_t particle = -1, spring = -1;  ///< inspect; −1: none asked for
+    bool quick = false;                       ///< reproduce
+    std::string what;                         ///< schema: scene, run or stats
 };
 
 // The commands. Each returns an exit code and throws what main() turns into one.
@@ -46,6 +51,9 @@ int command_run(const Options& options);
 int command_simulate(const Options& options);
 int command_render(const Options& options);
 int command_accuracy(const Options& options);
+int command_inspect(const Options& options);
+int command_reproduce(const Options& options);
+int command_schema(const Options& options);
 int command_check(const Options& options);
 int command_stability(const Options& options);
 int command_doctor(const Options& options);

@@ -60,7 +60,8 @@ void draw(const Pattern& pattern, Canvas& canvas) {
     } else {
         const double dot = std::max(unit, 0.9);
         for (const auto& [row, column] : pattern.entries)
-            canvas.rectangle(left + column * unit, top + row * unit, dot, dot);
+            canvas.add_rectangle(left + column * unit, top + row * unit, dot, dot);
+        canvas.fill();
     }
     canvas.color(outline);
     canvas.width(1.4);

@@ -14,9 +14,9 @@ namespace unravel {
 /// Where a block matrix has its 3×3 blocks (paper Figs 3–5).
 struct Pattern {
     std::string title;
-    std::uint32_t rows = 0;                             ///< block rows, and columns
-    std::vector<std::array<std::uint32_t, 2>> entries;  ///< row, column; the diagonal and both triangles
-    std::vector<std::array<std::uint32_t, 2>> blocks;   ///< outlined: rows [begin, end) of a component
+    std::uint32_t rows = 0;                               ///< block rows, and columns
+    std::vector<std::array<std::uint32_t, 2>> entries{};  ///< row, column; the diagonal and both triangles
+    std::vector<std::array<std::uint32_t, 2>> blocks{};   ///< outlined: rows [begin, end) of a component
 };
 
 /// A of the fully implicit scheme: every spring of the cloth couples its ends, bend springs included (Fig.

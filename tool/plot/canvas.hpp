@@ -24,7 +24,10 @@ public:
     void dash(bool on);
     void line(double x0, double y0, double x1, double y1);
     void rectangle(double x, double y, double w, double h);  ///< filled
-    void frame(double x, double y, double w, double h);      ///< outlined
+    /// Many rectangles in one stroke of ink: add each, then fill().
+    void add_rectangle(double x, double y, double w, double h) { cairo_rectangle(cr_, x, y, w, h); }
+    void fill() { cairo_fill(cr_); }
+    void frame(double x, double y, double w, double h);  ///< outlined
     void disc(double x, double y, double radius);
     /// Path of a polyline: move to the first point, line to the others, stroke.
     void move_to(double x, double y) { cairo_move_to(cr_, x, y); }

@@ -162,6 +162,7 @@ private:
                 gap = std::min(gap, std::abs(s.points[k].x - s.points[k - 1].x));
         }
         if (!plot_.x.categories.empty()) gap = 1;
+        if (plot_.bar_width > 0) gap = plot_.bar_width;
         const double page = std::min(std::abs(x_(x_.from + gap) - x_(x_.from)), 120.0) * 0.8;
         const double each = page / static_cast<double>(count);
         for (std::size_t k = 0; k < plot_.series.size(); ++k) {

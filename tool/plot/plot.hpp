@@ -23,25 +23,25 @@ struct PlotPoint {
 enum class SeriesStyle { line_and_points, line, points, bars };
 
 struct PlotSeries {
-    std::string label;  ///< in the legend; empty: not there
-    std::vector<PlotPoint> points;
+    std::string label{};  ///< in the legend; empty: not there
+    std::vector<PlotPoint> points{};
     SeriesStyle style = SeriesStyle::line_and_points;
     bool dashed = false;
     int color = -1;  ///< of the component palette; −1: the series' own number
 };
 
 struct PlotAxis {
-    std::string label;
+    std::string label{};
     bool log = false;
-    std::optional<double> from, to;       ///< absent: what the points need
-    std::vector<std::string> categories;  ///< in place of numbers: names of x = 0, 1, 2 …
+    std::optional<double> from{}, to{};     ///< absent: what the points need
+    std::vector<std::string> categories{};  ///< in place of numbers: names of x = 0, 1, 2 …
 };
 
 /// A straight line across the plot: a limit, a floor.
 struct PlotGuide {
     double value = 0;
     bool horizontal = true;  ///< at y = value; otherwise at x = value
-    std::string label;
+    std::string label{};
 };
 
 struct Plot {
@@ -49,6 +49,7 @@ struct Plot {
     PlotAxis x, y;
     std::vector<PlotSeries> series;
     std::vector<PlotGuide> guides;
+    double bar_width = 0;  ///< of all bars at one x together, in units of x; 0: from how near they stand
     int width = 720, height = 440;
 };
 

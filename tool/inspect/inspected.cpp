@@ -1,0 +1,53 @@
+#include "tool/inspect/inspected.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tool/render_options.hpp"
+#include "tool/view.hpp"
+
+namespace unravel {
+
+InspectedStep inspect_step(const Scene& scene, const RunFolder& folder, int frame, int step) {
+    InspectedStep out;
+    out.frame = frame;
+    out.simulation = start_simulation(scene);
+    const ClothModel& model = out.simulation.model;
+    out.steps = out.simulation.steps_per_frame;
+    out.step = step == 0 ? out.steps : step;
+    if (frame < 1) throw UsageError("--frame 0 comes before any step; the first that can be inspected is 1");
+    if (out.step > out.steps)
+        throw UsageError(fmt::format("--step {}: a frame of this run has {} steps", out.step, out.steps));
+
+    ComponentColors colors;
+    const auto edges = drawn_edges(model);
+    for (int k = 0; k < frame; ++k) {
+        if (!std::filesystem::exists(folder.record(k))) {
+            throw FolderError(fmt::format("'{}' holds {} frames; frame {} can't be inspected",
+                                          folder.root.string(), k, frame));
+        }
+        const FrameRecord record =
+            read_record(folder.record(k), scene_hash(scene), model.size(), model.springs.size());
+        colors.assign(record.component, edges);
+        if (k + 1 == frame) restore(out.simulation, record);
+    }
+    for (int k = 0; k < out.step; ++k) {
+        out.before = out.simulation.state;
+        out.report = next_step(out.simulation);
+    }
+    out.simulation.frame = frame;
+    out.record = first_record(out.simulation);
+    out.colors = colors.assign(out.record.component, edges);
+    out.components =
+        component_table(model, out.record.component, out.record.springs, out.record.solves, out.colors);
+    const ExtensionSprings& springs = model.springs;
+    out.kappa.resize(springs.size());
+    for (std::size_t s = 0; s < springs.size(); ++s) {
+        const double lighter = std::min(model.mass[springs.i[s]], model.mass[springs.j[s]]);
+        out.kappa[s] = kappa(out.report.h, 1 / lighter, springs.stiffness[s], springs.damping[s]);
+    }
+    return out;
+}
+
+}  // namespace unravel
