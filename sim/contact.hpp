@@ -36,7 +36,7 @@ struct StepView {
     std::span<const Vec3> v;  ///< (particles) what Δv is added to [m/s]
     std::span<const double> mass;
     double h = 0;           ///< s, factor of v' in x'
-    double gravity = 9.81;  ///< m/s², scale of forces that count as none
+    Vec3 gravity{0, 0, 0};  ///< m/s²: foreseen in what will touch; its size scales forces that count as none
     double step = 0;        ///< s, from x to x'
     double h_force = 0;     ///< s, factor of forces in the impulses
 };

@@ -117,7 +117,7 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
     // Constraints (Sec. 4; Baraff & Witkin 1998): S and z
     ws.base = stage.x;
     ws.friction.assign(n, Vec3::Zero());
-    const StepView view{state.x, stage.v_at, model.mass, stage.h, model.gravity.norm(), h, stage.h_force};
+    const StepView view{state.x, stage.v_at, model.mass, stage.h, model.gravity, h, stage.h_force};
     constrain(model, view, state, h, ws);
     timer.lap(report.times.contact);
 
