@@ -60,4 +60,11 @@ void constrain_touches(std::span<const Solid> solids, const StepView& view, std:
 void judge_touches(std::span<const Solid> solids, const StepView& view, const Constraints& constraints,
                    std::span<const Vec3> reaction, std::span<Touch> touches, std::vector<Contact>& out);
 
+/// The last resort after a step: contacts are foreseen from velocities, and what a taut spring flings into a
+/// fast solid within the step is not. Such a particle is put back on the solid's surface, within its skin,
+/// and no longer moves into it. Does nothing to what is fully constrained.
+///   x, v  (particles) at the end of the step
+void keep_outside(std::span<const Solid> solids, const SolidPoses& poses, const Constraints& constraints,
+                  double h, std::span<Vec3> x, std::span<Vec3> v);
+
 }  // namespace unravel

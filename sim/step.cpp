@@ -155,6 +155,7 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
         state.v[p] = v_next;
         state.x[p] = ws.base[p] + stage.h * v_next;
     });
+    if (!model.solids.empty()) keep_outside(model.solids, ws.poses, ws.constraints, h, state.x, state.v);
     if (scheme.multistep) forget_impacts(h, ws, state);
     state.h_previous = h;
     ++state.step;
