@@ -35,12 +35,18 @@ bool touches_solid(const Solid& solid, const Pose& now, const Pose& next, const 
     touch.normal = now.linear() * gradient;
     touch.velocity = (next * local - view.x[p]) / view.step;
     touch.pinched = false;
+    // Gravity is foreseen, so that what is laid on a slope is caught before it has begun to slide.
+    const Vec3 coming = view.v[p] + view.step * view.gravity - touch.velocity;
+    const double ahead = touch.gap + view.step * touch.normal.dot(coming);
+    const bool catches = ahead < -catch_share * solid.offset;
     if (known) {
         touch.contact = *known;
-        return touch.gap < open_share * solid.offset;
+        // One that has opened but is about to be run over again is still a contact.
+        return catches || touch.gap < open_share * solid.offset;
     }
-    const double ahead = touch.gap + view.step * touch.normal.dot(view.v[p] - touch.velocity);
-    return ahead < -catch_share * solid.offset;
+    // No force has been felt yet; friction reckons with what it takes to stop the particle at the surface.
+    touch.contact.force = view.mass[p] * std::max(-ahead, 0.0) / (view.step * view.step);
+    return catches;
 }
 
 // Touches of one particle.
@@ -304,7 +310,7 @@ void judge_touches(std::span<const Solid> solids, const StepView& view, const Co
         const Constraint* constraint = constraints.find(p);
         const Vec3 force =
             reaction[static_cast<std::size_t>(constraint - constraints.all().data())] / view.h_force;
-        const double nothing = pull_share * view.mass[p] * view.gravity;
+        const double nothing = pull_share * view.mass[p] * view.gravity.norm();
         along.resize(group.size());
         split_force(group, force, along);
         for (std::size_t t = 0; t < group.size(); ++t) {

@@ -36,7 +36,7 @@ struct StepView {
     std::span<const Vec3> v;  ///< (particles) what Δv is added to [m/s]
     std::span<const double> mass;
     double h = 0;           ///< s, factor of v' in x'
-    double gravity = 9.81;  ///< m/s², scale of forces that count as none
+    Vec3 gravity{0, 0, 0};  ///< m/s²: foreseen in what will touch; its size scales forces that count as none
     double step = 0;        ///< s, from x to x'
     double h_force = 0;     ///< s, factor of forces in the impulses
 };
@@ -59,5 +59,12 @@ void constrain_touches(std::span<const Solid> solids, const StepView& view, std:
 ///   reaction  (constraints) impulse of each constraint, A Δv − b [kg·m/s]
 void judge_touches(std::span<const Solid> solids, const StepView& view, const Constraints& constraints,
                    std::span<const Vec3> reaction, std::span<Touch> touches, std::vector<Contact>& out);
+
+/// The last resort after a step: contacts are foreseen from velocities, and what a taut spring flings into a
+/// fast solid within the step is not. Such a particle is put back on the solid's surface, within its skin,
+/// and no longer moves into it. Does nothing to what is fully constrained.
+///   x, v  (particles) at the end of the step
+void keep_outside(std::span<const Solid> solids, const SolidPoses& poses, const Constraints& constraints,
+                  double h, std::span<Vec3> x, std::span<Vec3> v);
 
 }  // namespace unravel

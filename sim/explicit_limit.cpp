@@ -35,6 +35,11 @@ double larger_eigenvalue(const Eigen::Matrix2d& A) {
 
 ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options, double h) {
     const Splitting splitting = scheme_of(options.integrator).splitting(options.threshold);
+    // What is pinned for good does not swing.
+    std::vector<char> held(model.size(), 0);
+    for (const PinnedGroup& pin : model.pins) {
+        for (const std::uint32_t p : pin.particles) held[p] = !std::isfinite(pin.release);
+    }
     const auto share_at = [&](double step, ExplicitLimit* out) {
         std::vector<Eigen::Matrix2d> blocks(model.size(), Eigen::Matrix2d::Zero());
         std::vector<double> kappas(model.size(), 0.0);
@@ -53,6 +58,7 @@ ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options
         }
         double share = 0;
         for (std::uint32_t p = 0; p < model.size(); ++p) {
+            if (held[p] != 0) continue;
             const double here = 0.5 * larger_eigenvalue(blocks[p]) / model.mass[p];
             if (here <= share) continue;
             share = here;

@@ -16,7 +16,6 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "records are little-endian");
 
-constexpr std::string_view magic = "UNRAVEL\x03";
 // Far above what four million particles need; a damaged length must not become an allocation.
 constexpr std::size_t largest_file = std::size_t{4} << 30;
 
@@ -144,8 +143,10 @@ public:
     }
     template <typename T, typename F>
     void list(std::vector<T>& values, const F& each) {
-        values.resize(length(1));
-        for (T& value : values) each(value);
+        // One at a time: a length that lies ends with the bytes, before it has become memory.
+        const std::size_t count = length(1);
+        values.clear();
+        for (std::size_t k = 0; k < count; ++k) each(values.emplace_back());
     }
     std::size_t left() const { return left_; }
 
@@ -189,7 +190,7 @@ std::uint64_t state_hash(const ClothState& state) {
 
 void write_record(const std::filesystem::path& file, std::uint64_t scene_hash, const FrameRecord& record) {
     Writer out;
-    out.append(magic.data(), magic.size());
+    out.append(record_magic.data(), record_magic.size());
     out(scene_hash);
     members(out, record);
     out(hash_bytes(out.bytes().data(), out.bytes().size()));
@@ -198,17 +199,21 @@ void write_record(const std::filesystem::path& file, std::uint64_t scene_hash, c
 
 FrameRecord read_record(const std::filesystem::path& file, std::uint64_t scene_hash, std::size_t particles,
                         std::size_t springs) {
-    const std::vector<std::uint8_t> bytes = read_whole_file(file, largest_file);
+    return parse_record(read_whole_file(file, largest_file), file, scene_hash, particles, springs);
+}
+
+FrameRecord parse_record(std::span<const std::uint8_t> bytes, const std::filesystem::path& file,
+                         std::uint64_t scene_hash, std::size_t particles, std::size_t springs) {
     const std::size_t tail = sizeof(std::uint64_t);
-    require(
-        bytes.size() > magic.size() + 2 * tail && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0,
-        file, "is no frame record of this version");
+    require(bytes.size() > record_magic.size() + 2 * tail &&
+                std::memcmp(bytes.data(), record_magic.data(), record_magic.size()) == 0,
+            file, "is no frame record of this version");
     std::uint64_t stored = 0;
     std::memcpy(&stored, bytes.data() + bytes.size() - tail, tail);
     require(stored == hash_bytes(bytes.data(), bytes.size() - tail), file,
             "is damaged: its checksum does not match");
 
-    Reader in(file, bytes.data() + magic.size(), bytes.size() - magic.size() - tail);
+    Reader in(file, bytes.data() + record_magic.size(), bytes.size() - record_magic.size() - tail);
     std::uint64_t scene = 0;
     in(scene);
     require(scene == scene_hash, file, "was made from another scene");

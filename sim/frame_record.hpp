@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "sim/forces/extension.hpp"
@@ -23,6 +25,9 @@ struct FrameRecord {
     std::vector<StepReport> reports;      ///< one per step since the frame before; empty for frame 0
 };
 
+/// What every record begins with; the last byte is the format's version.
+inline constexpr std::string_view record_magic = "UNRAVEL\x03";
+
 /// Hash of positions and velocities, by which runs are compared bit for bit (64-bit FNV-1a over their bytes).
 std::uint64_t state_hash(const ClothState& state);
 
@@ -34,6 +39,10 @@ void write_record(const std::filesystem::path& file, std::uint64_t scene_hash, c
 /// InputError if it is damaged, of another scene, or does not fit.
 FrameRecord read_record(const std::filesystem::path& file, std::uint64_t scene_hash, std::size_t particles,
                         std::size_t springs);
+
+/// The same from a record's bytes; `file` stands for them in messages.
+FrameRecord parse_record(std::span<const std::uint8_t> bytes, const std::filesystem::path& file,
+                         std::uint64_t scene_hash, std::size_t particles, std::size_t springs);
 
 /// FNV-1a of bytes, continued from `seed`.
 std::uint64_t hash_bytes(const void* data, std::size_t size, std::uint64_t seed = 14695981039346656037ull);

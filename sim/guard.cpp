@@ -62,6 +62,12 @@ std::string particle_name(const ClothModel& model, std::uint32_t p) {
     return where + (model.cloths.size() > 1 ? fmt::format(" of cloth {})", c) : std::string(")"));
 }
 
+double height_energy(const ClothModel& model, const std::vector<Vec3>& x) {
+    double energy = 0;
+    for (std::size_t p = 0; p < model.size(); ++p) energy -= model.mass[p] * model.gravity.dot(x[p]);
+    return energy;
+}
+
 struct Judgement {
     const ClothModel& model;
     const StepOptions& options;
@@ -113,14 +119,14 @@ struct Judgement {
     }
 
     void judge_energy(const StepReport& report, double limit) {
-        failure.value = report.kinetic + report.potential;
+        failure.value = report.kinetic + height_energy(model, after.x);
         if (failure.value <= limit) return;
         failure.limit = limit;
         failure.particles = worst_particles(
             model.size(), 0.0, [&](std::uint32_t p) { return model.mass[p] * after.v[p].squaredNorm(); });
         stop(Criterion::energy,
-             fmt::format("energy would grow to {:.3g} J (at most {:.3g} J) though nothing puts any in; {} is "
-                         "the fastest",
+             fmt::format("the energy of motion would grow to {:.3g} J (at most {:.3g} J) though nothing puts "
+                         "any in; {} is the fastest",
                          failure.value, limit, particle_name(model, failure.particles.front())));
     }
 
@@ -166,13 +172,11 @@ Guard make_guard(const ClothModel& model, const ClothState& start) {
     measure(model, bend, start, scratch, report);
     guard.strain += std::max(report.max_strain, 0.0);
     if (takes_energy(model)) return guard;
-    double weight = 0, falls = 0, size = 0, potential = report.potential;
-    for (std::size_t p = 0; p < model.size(); ++p) {
-        weight += model.mass[p] * model.gravity.norm();
-        falls -= model.mass[p] * model.gravity.dot(start.x[p]);
-    }
+    double weight = 0, size = 0;
+    for (const double m : model.mass) weight += m * model.gravity.norm();
     for (const ClothPatch& patch : model.cloths) size = std::max({size, patch.size[0], patch.size[1]});
-    guard.energy = report.kinetic + potential + (report.kinetic + (potential - falls) + weight * size);
+    const double height = height_energy(model, start.x), springs = report.potential - height;
+    guard.energy = height + 2.0 * (report.kinetic + springs + weight * size);
     return guard;
 }
 

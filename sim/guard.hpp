@@ -10,15 +10,17 @@ namespace unravel {
 /// numbers that mean nothing. All are far beyond what a sound run reaches.
 struct Guard {
     double strain = 10;        ///< of stretch springs, (l − L)/L
-    double energy = infinite;  ///< J; infinite where the scene puts energy in
+    double energy = infinite;  ///< J, of motion and height; infinite where the scene puts energy in
     double residual = 0.1;     ///< relative, of a component that CG did not solve to its tolerance
     ClothState before;         ///< what a failing step is taken back to; memory kept between steps
 
     static constexpr double infinite = std::numeric_limits<double>::infinity();
 };
 
-/// The guard of a run that starts at `start`. Strain may reach 10 beyond what the scene placed; energy twice
-/// what the run has to spend: springs, motion, and a fall through the cloth's own size.
+/// The guard of a run that starts at `start`. Strain may reach 10 beyond what the scene placed; energy of
+/// motion and height twice what the run has to spend: springs, motion, and a fall through the cloth's own
+/// size. Energy in springs is not counted: a stiff spring that goes taut within a long step holds much of it
+/// for that one step.
 Guard make_guard(const ClothModel& model, const ClothState& start);
 
 /// True where a scene puts energy in while it runs: moving pins or solids, wind. Still air only takes.

@@ -117,7 +117,7 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
     // Constraints (Sec. 4; Baraff & Witkin 1998): S and z
     ws.base = stage.x;
     ws.friction.assign(n, Vec3::Zero());
-    const StepView view{state.x, stage.v_at, model.mass, stage.h, model.gravity.norm(), h, stage.h_force};
+    const StepView view{state.x, stage.v_at, model.mass, stage.h, model.gravity, h, stage.h_force};
     constrain(model, view, state, h, ws);
     timer.lap(report.times.contact);
 
@@ -155,6 +155,7 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
         state.v[p] = v_next;
         state.x[p] = ws.base[p] + stage.h * v_next;
     });
+    if (!model.solids.empty()) keep_outside(model.solids, ws.poses, ws.constraints, h, state.x, state.v);
     if (scheme.multistep) forget_impacts(h, ws, state);
     state.h_previous = h;
     ++state.step;

@@ -11,6 +11,7 @@
 #include "tool/interrupt.hpp"
 #include "tool/options.hpp"
 #include "tool/render_options.hpp"
+#include "tool/stability_map.hpp"
 #include "tool/stability_report.hpp"
 #include "tool/view.hpp"
 
@@ -42,6 +43,29 @@ bool draw_case(const GlContext& context, const HardOutcome& outcome, const std::
     return true;
 }
 
+std::vector<std::string> draw_maps(const std::filesystem::path& scene, const std::filesystem::path& output,
+                                   bool quiet) {
+    std::vector<StabilityMap> maps;
+    for (const char* integrator :
+         {"explicit", "imex", "adaptive-imex", "adaptive-imex2", "implicit", "bdf2"}) {
+        if (InterruptWatch::requested()) break;
+        maps.push_back(make_stability_map(scene, integrator));
+        const auto& cells = maps.back().cells;
+        // The paper's claim: nothing blows up below kappa = 1/2.
+        const auto below = std::count_if(cells.begin(), cells.end(), [](const MapCell& cell) {
+            return cell.kappa <= 0.5 && !cell.stable;
+        });
+        const auto broken =
+            std::count_if(cells.begin(), cells.end(), [](const MapCell& cell) { return !cell.stable; });
+        if (!quiet) {
+            fmt::print("map of {:<15} {} of {} runs blow up, {} of them at kappa <= 1/2\n", integrator,
+                       broken, cells.size(), below);
+            std::fflush(stdout);
+        }
+    }
+    return write_stability_maps(output, maps);
+}
+
 }  // namespace
 
 int command_stability(const Options& options) {
@@ -70,10 +94,12 @@ int command_stability(const Options& options) {
         line.outcome.last = {};
         lines.push_back(std::move(line));
     }
+    std::vector<std::string> maps;
+    if (options.map) maps = draw_maps(folder / "map.toml", output, options.quiet || options.json);
     const nlohmann::ordered_json json = stability_json(lines);
     write_whole_file(output / "stability.json", json.dump(2) + "\n");
     write_whole_file(output / "table.md", stability_markdown(lines));
-    write_whole_file(output / "index.html", stability_html(lines));
+    write_whole_file(output / "index.html", stability_html(lines, maps));
     const auto wrong = std::count_if(lines.begin(), lines.end(),
                                      [](const HardLine& line) { return !line.outcome.failures.empty(); });
     if (options.json) {

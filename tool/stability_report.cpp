@@ -117,7 +117,7 @@ std::string stability_markdown(const std::vector<HardLine>& lines) {
     return out;
 }
 
-std::string stability_html(const std::vector<HardLine>& lines) {
+std::string stability_html(const std::vector<HardLine>& lines, const std::vector<std::string>& maps) {
     std::string out =
         "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Hard cases</title>\n<style>\n"
         "body{font:15px/1.4 system-ui,sans-serif;margin:2em auto;max-width:1500px;padding:0 1em;"
@@ -156,7 +156,11 @@ std::string stability_html(const std::vector<HardLine>& lines) {
         for (const std::string& set : line.hard.set) changed += " --set " + set;
         out += fmt::format("<code>{}</code></div></article>\n", escaped(changed));
     }
-    return out + "</main></html>\n";
+    out += "</main>\n";
+    if (!maps.empty()) out += "<h1>Stiffness and step</h1>\n<main>\n";
+    for (const std::string& map : maps)
+        out += fmt::format("<article><object data=\"{}\" type=\"image/svg+xml\"></object></article>\n", map);
+    return out + (maps.empty() ? "" : "</main>") + "</html>\n";
 }
 
 }  // namespace unravel

@@ -26,7 +26,7 @@ nlohmann::ordered_json stability_json(const std::vector<HardLine>& lines);
 /// The table of the README's section on reliability.
 std::string stability_markdown(const std::vector<HardLine>& lines);
 
-/// A page with each case's picture and numbers.
-std::string stability_html(const std::vector<HardLine>& lines);
+/// A page with each case's picture and numbers, and the maps' pictures.
+std::string stability_html(const std::vector<HardLine>& lines, const std::vector<std::string>& maps);
 
 }  // namespace unravel

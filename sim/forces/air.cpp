@@ -1,7 +1,6 @@
 #include "sim/forces/air.hpp"
 
 #include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 
