@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "render/bounds.hpp"
 #include "render/camera.hpp"
 #include "render/cloth_renderer.hpp"
 #include "render/color.hpp"
 #include "render/frame_block.hpp"
 #include "render/framebuffer.hpp"
+#include "render/ground.hpp"
 #include "render/readback.hpp"
 #include "render/shadow.hpp"
 #include "render/solid_renderer.hpp"
@@ -54,6 +56,7 @@ struct Renderer::Parts {
     ShadowMaps shadows;
     ClothRenderer cloths;
     WireRenderer wires;
+    Ground ground;
     GlProgram depth{{"depth.vert"}, {"depth.frag"}};
     GlProgram surface{{"frame.glsl", "surface.vert"}, {"frame.glsl", "surface.frag"}};
     GLint depth_transform = depth.uniform("transform"), surface_strength = surface.uniform("strength");
@@ -73,6 +76,7 @@ struct Renderer::Parts {
           shadows(draw_scene, context.software() ? 1024 : 2048),
           cloths(draw_scene),
           wires(draw_scene),
+          ground(draw_scene, solids.reach(), context.software() ? 512 : 1024),
           block(fixed_block(draw_scene, shadows, solids.reach())) {
         allocate_buffer(GL_UNIFORM_BUFFER, block_buffer, sizeof(FrameBlock));
         for (const ClothMesh& mesh : draw_scene.cloths) {
@@ -85,7 +89,8 @@ struct Renderer::Parts {
     void update_block(DrawStyle style, const CameraView& view);
     void draw_textured(const DrawFrame& frame);
     void draw_components(const DrawFrame& frame);
-    void clear(Rgb background) const;
+    void draw_backdrop(DrawStyle style, const DrawFrame& frame) const;
+    PixelRect begin_shapes(const DrawFrame& frame) const;
     int height() const { return framebuffer.height() * framebuffer.supersample(); }
 };
 
@@ -114,15 +119,29 @@ void Renderer::Parts::update_block(DrawStyle style, const CameraView& view) {
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, block_buffer);
 }
 
-void Renderer::Parts::clear(Rgb background) const {
-    const Vec3f c = linear(background);
+void Renderer::Parts::draw_backdrop(DrawStyle style, const DrawFrame& frame) const {
+    framebuffer.begin_backdrop();
+    const Vec3f c = linear(style == DrawStyle::textured ? scene->background : scene->components_background);
     glClearColor(c.x(), c.y(), c.z(), 1);
-    glDepthMask(GL_TRUE);
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LEQUAL);
-    glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ground.draw(style, frame.camera.position);
+}
+
+/// Opens the layer where shapes will be, and puts the ground's depth there; tells where.
+PixelRect Renderer::Parts::begin_shapes(const DrawFrame& frame) const {
+    // Wires and dots are drawn around their particles.
+    const int margin = static_cast<int>(2 * WireRenderer::line_width(height())) + 2;
+    const PixelRect rect = solids.any_plane() ? framebuffer.whole()
+                                              : covered_rect(*scene, frame, block.view_projection,
+                                                             framebuffer.whole(), margin);
+    if (rect.empty()) return rect;
+    framebuffer.begin_layer(rect);
+    depth.use();
+    glUniformMatrix4fv(depth_transform, 1, GL_FALSE, block.view_projection.data());
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    ground.draw_depth(frame.camera.position);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    return rect;
 }
 
 void Renderer::Parts::draw_textured(const DrawFrame& frame) {
@@ -136,13 +155,15 @@ void Renderer::Parts::draw_textured(const DrawFrame& frame) {
         else
             cloths.draw_shapes();
     });
-    framebuffer.bind();
-    clear(scene->background);
-    shadows.bind();
-    cloths.draw_fabric();
-    glEnable(GL_CULL_FACE);
-    solids.draw_shaded(frame);
-    glDisable(GL_CULL_FACE);
+    ground.light(frame, shadows);
+    draw_backdrop(DrawStyle::textured, frame);
+    const PixelRect rect = begin_shapes(frame);
+    if (!rect.empty()) {
+        shadows.bind();
+        cloths.draw_fabric();
+        solids.draw_shaded(frame);
+    }
+    framebuffer.finish(rect);
 }
 
 void Renderer::Parts::draw_components(const DrawFrame& frame) {
@@ -154,8 +175,9 @@ void Renderer::Parts::draw_components(const DrawFrame& frame) {
         wires.spacing() * block.viewport.z() / std::max((centre - frame.camera.position).norm(), 1e-3f);
     const float relative_gap = gap * 720 / static_cast<float>(height());
 
-    framebuffer.bind();
-    clear(scene->components_background);
+    draw_backdrop(DrawStyle::components, frame);
+    const PixelRect rect = begin_shapes(frame);
+    if (rect.empty()) return framebuffer.finish(rect);
     surface.use();
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1, 1);
@@ -169,6 +191,7 @@ void Renderer::Parts::draw_components(const DrawFrame& frame) {
     solids.draw_quiet(frame, surface_uniforms);
     glDisable(GL_POLYGON_OFFSET_FILL);
     wires.draw(height(), gap);
+    framebuffer.finish(rect);
 }
 
 Renderer::Renderer(const GlContext& context, const DrawScene& scene, RenderSettings settings)
@@ -187,7 +210,6 @@ void Renderer::submit(DrawStyle style, const DrawFrame& frame) {
         parts_->draw_textured(frame);
     else
         parts_->draw_components(frame);
-    parts_->framebuffer.resolve();
     parts_->readback.start();
 }
 

@@ -84,7 +84,7 @@ void WireRenderer::draw(int height, float gap) const {
     bind_tables();
     glBindVertexArray(vertex_array_);
     glEnable(GL_BLEND);
-    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     glDepthMask(GL_FALSE);
     wire_.use();
     glUniform1f(width_, line_width(height));

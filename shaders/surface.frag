@@ -13,5 +13,5 @@ void main() {
     float shade = (0.35 + 0.65 * facing) * (0.7 + 0.3 * above);
     vec3 base = mix(surface_color * strength, tint.rgb, tint.w);
     float fade = fades ? smoothstep(0.1, 0.28, distance(world, fade_centre) / ground.w) : 0.0;
-    color = vec4(mix(base * shade, background.rgb, fade), 1.0);
+    color = vec4(base * shade, 1.0) * (1.0 - fade);
 }
