@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "render/color.hpp"
@@ -134,6 +135,7 @@ ClothRenderer::ClothRenderer(const DrawScene& scene) {
     }
     normals_.resize(particles);
     scratch_.resize(most);
+    shaded_.resize(particles);
     scratch_colors_.resize(most);
 }
 
@@ -147,15 +149,25 @@ void ClothRenderer::update_shape(const DrawFrame& frame) {
     }
 }
 
-void ClothRenderer::update_colors(const DrawFrame& frame) {
+std::span<const std::array<std::uint8_t, 4>> ClothRenderer::update_colors(const DrawFrame& frame) {
     for (const Cloth& cloth : cloths_) {
         const std::vector<std::uint32_t>& particle = cloth.mesh->particle;
-        for (std::size_t i = 0; i < particle.size(); ++i) {
-            const Rgb c = frame.particle_colors[particle[i]];
-            scratch_colors_[i] = {c.r, c.g, c.b, 255};
+        for (const std::uint32_t p : particle) {
+            const Vec3f view = (frame.camera.position - frame.positions[p]).normalized();
+            const float facing = normals_[p].dot(view);
+            // Which way the side that is seen looks: sideways and down are darker. Factors of encoded colours.
+            const float above = facing >= 0 ? normals_[p].y() : -normals_[p].y();
+            const float shade = 0.72f + 0.2f * std::abs(facing) + 0.08f * above;
+            const auto channel = [&](std::uint8_t c) {
+                return static_cast<std::uint8_t>(shade * static_cast<float>(c) + 0.5f);
+            };
+            const Rgb c = frame.particle_colors[p];
+            shaded_[p] = {channel(c.r), channel(c.g), channel(c.b), 255};
         }
+        for (std::size_t i = 0; i < particle.size(); ++i) scratch_colors_[i] = shaded_[particle[i]];
         update_buffer(GL_ARRAY_BUFFER, cloth.colors, std::span(scratch_colors_).first(particle.size()));
     }
+    return shaded_;
 }
 
 void ClothRenderer::draw_triangles(const Cloth& cloth) const {

@@ -105,7 +105,7 @@ void SolidRenderer::draw_quiet(const DrawFrame& frame, const SurfaceUniforms& un
             part.fades ? Vec3f(2.2f * background) : Vec3f(3.5f * background + Vec3f::Constant(0.04f));
         if (part.fades) matrix.block<3, 3>(0, 0) *= quiet_ground;
         glUniformMatrix4fv(uniforms.model, 1, GL_FALSE, matrix.data());
-        glUniform4f(uniforms.tint, tint.x(), tint.y(), tint.z(), 1);
+        glUniform3fv(uniforms.tint, 1, tint.data());
         glUniform1i(uniforms.fades, part.fades);
         glUniform3fv(uniforms.fade_centre, 1, middle.data());
         if (part.fades) glEnable(GL_BLEND);
