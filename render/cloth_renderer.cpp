@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "render/color.hpp"
@@ -12,6 +13,9 @@
 namespace unravel {
 
 namespace {
+
+// Triangles of a cloth from which on its light is worked out at its vertices.
+constexpr std::size_t fine_mesh = 12'000;
 
 void upload_texture(GLuint texture, const Image& image) {
     glBindTexture(GL_TEXTURE_2D, texture);
@@ -49,12 +53,31 @@ Vec3f mix(const Vec3f& a, const Vec3f& b, float t) {
     return a + t * (b - a);
 }
 
+/// Mean colour of a weave of two yarns.
+Vec3f mean_of(WeavePattern weave, const std::array<Vec3f, 2>& yarn) {
+    return mix(yarn[0], yarn[1], weave == WeavePattern::solid ? 0 : weave == WeavePattern::plain ? 0.11f : 0.5f);
+}
+
+/// Mean colour of a picture, in linear light.
+Vec3f mean_of(const Image& image) {
+    Vec3f sum = Vec3f::Zero();
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const std::uint8_t* p = image.at(x, y);
+            sum += linear({p[0], p[1], p[2]});
+        }
+    return sum / static_cast<float>(std::max(image.width * image.height, 1));
+}
+
 GlProgram fabric_program(const ClothMesh& mesh) {
     const ClothAppearance& look = mesh.appearance;
-    GlProgram program({"frame.glsl", "sky.glsl", "cloth.vert"},
-                      {"frame.glsl", "light.glsl", "weave.glsl", "cloth.frag"},
-                      fmt::format("#define WEAVE {}\n#define PICTURE {}\n", static_cast<int>(look.weave),
-                                  mesh.texture.pixels.empty() ? 0 : 1));
+    const std::string defines =
+        fmt::format("#define WEAVE {}\n#define PICTURE {}\n#define LIGHT_AT_VERTICES {}\n",
+                    static_cast<int>(look.weave), mesh.texture.pixels.empty() ? 0 : 1,
+                    mesh.triangles.size() > fine_mesh ? 1 : 0);
+    GlProgram program({"frame.glsl", "light.glsl", "sky.glsl", "fabric.glsl", "cloth.vert"},
+                      {"frame.glsl", "light.glsl", "pattern.glsl", "fabric.glsl", "weave.glsl", "cloth.frag"},
+                      defines);
     ShadowMaps::connect(program);
     program.sampler("picture", 0);
     const Vec3f front = linear(look.front), second = linear(look.front_second), back = linear(look.back);
@@ -64,6 +87,10 @@ GlProgram fabric_program(const ClothMesh& mesh) {
     glUniform1f(program.uniform("thread"), look.period / 24);
     glUniform3fv(program.uniform("yarn_front"), 2, yarn_front[0].data());
     glUniform3fv(program.uniform("yarn_back"), 2, yarn_back[0].data());
+    const std::array<Vec3f, 2> mean{mesh.texture.pixels.empty() ? mean_of(look.weave, yarn_front)
+                                                                : mean_of(mesh.texture),
+                                    mean_of(look.weave, yarn_back)};
+    glUniform3fv(program.uniform("mean_albedo"), 2, mean[0].data());
     return program;
 }
 
@@ -108,6 +135,7 @@ ClothRenderer::ClothRenderer(const DrawScene& scene) {
     }
     normals_.resize(particles);
     scratch_.resize(most);
+    shaded_.resize(particles);
     scratch_colors_.resize(most);
 }
 
@@ -121,15 +149,25 @@ void ClothRenderer::update_shape(const DrawFrame& frame) {
     }
 }
 
-void ClothRenderer::update_colors(const DrawFrame& frame) {
+std::span<const std::array<std::uint8_t, 4>> ClothRenderer::update_colors(const DrawFrame& frame) {
     for (const Cloth& cloth : cloths_) {
         const std::vector<std::uint32_t>& particle = cloth.mesh->particle;
-        for (std::size_t i = 0; i < particle.size(); ++i) {
-            const Rgb c = frame.particle_colors[particle[i]];
-            scratch_colors_[i] = {c.r, c.g, c.b, 255};
+        for (const std::uint32_t p : particle) {
+            const Vec3f view = (frame.camera.position - frame.positions[p]).normalized();
+            const float facing = normals_[p].dot(view);
+            // Which way the side that is seen looks: sideways and down are darker. Factors of encoded colours.
+            const float above = facing >= 0 ? normals_[p].y() : -normals_[p].y();
+            const float shade = 0.72f + 0.2f * std::abs(facing) + 0.08f * above;
+            const auto channel = [&](std::uint8_t c) {
+                return static_cast<std::uint8_t>(shade * static_cast<float>(c) + 0.5f);
+            };
+            const Rgb c = frame.particle_colors[p];
+            shaded_[p] = {channel(c.r), channel(c.g), channel(c.b), 255};
         }
+        for (std::size_t i = 0; i < particle.size(); ++i) scratch_colors_[i] = shaded_[particle[i]];
         update_buffer(GL_ARRAY_BUFFER, cloth.colors, std::span(scratch_colors_).first(particle.size()));
     }
+    return shaded_;
 }
 
 void ClothRenderer::draw_triangles(const Cloth& cloth) const {

@@ -15,10 +15,11 @@ public:
 
     /// New positions and smooth normals.
     void update_shape(const DrawFrame& frame);
-    /// New colours of the component view.
-    void update_colors(const DrawFrame& frame);
+    /// New colours of the component view: the particles' own, lightly shaded by the surface's tilt, so that
+    /// folds are seen. The result holds until the next call.
+    std::span<const std::array<std::uint8_t, 4>> update_colors(const DrawFrame& frame);
 
-    /// Triangles only: position at attribute 0, normal at 1, uv at 2, colour at 3.
+    /// Triangles only: position at attribute 0, colour at 3.
     void draw_shapes() const;
     /// The same in at most a few thousand triangles, for the small maps of sky light. Position only.
     void draw_coarse() const;
@@ -44,7 +45,8 @@ private:
     std::vector<Cloth> cloths_;
     std::vector<Vec3f> normals_;   ///< (particles)
     std::vector<Vertex> scratch_;  ///< of one cloth at a time
-    std::vector<std::array<std::uint8_t, 4>> scratch_colors_;
+    std::vector<std::array<std::uint8_t, 4>> shaded_;          ///< (particles) sRGB
+    std::vector<std::array<std::uint8_t, 4>> scratch_colors_;  ///< of one cloth at a time
 };
 
 }  // namespace unravel

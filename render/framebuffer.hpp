@@ -5,31 +5,46 @@
 
 namespace unravel {
 
-/// What frames are drawn into: a multisampled sRGB target of supersample × the frame's size, resolved and
-/// averaged down to the frame's size. Averages are taken in linear light.
+/// Pixels of a target, from its lower left corner.
+struct PixelRect {
+    int x = 0, y = 0, width = 0, height = 0;
+    bool empty() const { return width <= 0 || height <= 0; }
+};
+
+/// What frames are drawn into, supersample × as wide and high as they come out. Two targets in sRGB:
+/// - the backdrop, one sample a pixel, for what fills the picture and has no edges;
+/// - the layer, multisampled, for shapes: it starts out transparent, and is laid over the backdrop only
+///   where something was drawn.
+/// A software renderer pays for every sample of every pixel, so the layer is kept to the rectangle it needs.
+/// All means are taken in linear light.
 class Framebuffer {
 public:
     /// `samples` beyond what the renderer offers are clamped, see samples(). Throws RendererError where the
     /// renderer cannot hold a picture of this size.
     Framebuffer(const GlContext& context, int width, int height, int samples, int supersample);
 
-    int width() const { return width_; }
-    int height() const { return height_; }
+    int width() const { return width_; }    ///< of the finished frame [px]
+    int height() const { return height_; }  ///< likewise
     int samples() const { return samples_; }
     int supersample() const { return supersample_; }
+    /// All of either target.
+    PixelRect whole() const { return {0, 0, width_ * supersample_, height_ * supersample_}; }
 
-    /// Makes the target current, with sRGB encoding on.
-    void bind() const;
-    /// Resolves; afterwards the finished frame is bound for reading.
-    void resolve() const;
+    /// Makes the backdrop current: colour only.
+    void begin_backdrop() const;
+    /// Makes the layer current, transparent and of greatest depth within `rect`, and confines drawing to it.
+    /// Colours are premultiplied by alpha.
+    void begin_layer(const PixelRect& rect) const;
+    /// Lays `rect` of the layer over the backdrop and averages down; the finished frame is bound for reading.
+    void finish(const PixelRect& rect) const;
 
 private:
     int width_, height_, samples_, supersample_;
-    GlFramebuffer target_, resolved_, finished_;
-    GlRenderbuffer target_color_, target_depth_, finished_color_;
-    GlTexture resolved_color_;
+    GlFramebuffer layer_, backdrop_, finished_;
+    GlRenderbuffer layer_depth_, finished_color_;
+    GlTexture layer_color_, backdrop_color_;
     GlVertexArray no_vertices_;
-    GlProgram average_;
+    GlProgram lay_, average_;
 };
 
 }  // namespace unravel

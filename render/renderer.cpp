@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "render/bounds.hpp"
 #include "render/camera.hpp"
 #include "render/cloth_renderer.hpp"
 #include "render/color.hpp"
 #include "render/frame_block.hpp"
 #include "render/framebuffer.hpp"
+#include "render/ground.hpp"
 #include "render/readback.hpp"
 #include "render/shadow.hpp"
 #include "render/solid_renderer.hpp"
@@ -48,15 +50,20 @@ struct Renderer::Parts {
     const DrawScene* scene;
     RenderSettings settings;
     std::string renderer;
-    Framebuffer framebuffer;
+    Framebuffer framebuffer;  ///< of the textured view
+    // Wires cover pixels by as much as they should without more samples; on the CPU each sample costs as much
+    // again as the first.
+    Framebuffer wire_framebuffer;
     Readback readback;
     SolidRenderer solids;
     ShadowMaps shadows;
     ClothRenderer cloths;
     WireRenderer wires;
+    Ground ground;
     GlProgram depth{{"depth.vert"}, {"depth.frag"}};
     GlProgram surface{{"frame.glsl", "surface.vert"}, {"frame.glsl", "surface.frag"}};
-    GLint depth_transform = depth.uniform("transform"), surface_strength = surface.uniform("strength");
+    GlProgram sheet{{"frame.glsl", "color.glsl", "sheet.vert"}, {"sheet.frag"}};
+    GLint depth_transform = depth.uniform("transform"), sheet_strength = sheet.uniform("strength");
     SolidRenderer::SurfaceUniforms surface_uniforms{surface.uniform("model"), surface.uniform("tint"),
                                                     surface.uniform("fades"), surface.uniform("fade_centre")};
     GlBuffer block_buffer;
@@ -68,11 +75,14 @@ struct Renderer::Parts {
           settings(asked),
           renderer(context.renderer()),
           framebuffer(context, asked.width, asked.height, asked.samples, asked.supersample),
+          wire_framebuffer(context, asked.width, asked.height, context.software() ? 1 : asked.samples,
+                           asked.supersample),
           readback(asked.width, asked.height),
           solids(draw_scene),
           shadows(draw_scene, context.software() ? 1024 : 2048),
           cloths(draw_scene),
           wires(draw_scene),
+          ground(draw_scene, solids.reach(), context.software() ? 512 : 1024),
           block(fixed_block(draw_scene, shadows, solids.reach())) {
         allocate_buffer(GL_UNIFORM_BUFFER, block_buffer, sizeof(FrameBlock));
         for (const ClothMesh& mesh : draw_scene.cloths) {
@@ -85,7 +95,12 @@ struct Renderer::Parts {
     void update_block(DrawStyle style, const CameraView& view);
     void draw_textured(const DrawFrame& frame);
     void draw_components(const DrawFrame& frame);
-    void clear(Rgb background) const;
+    const Framebuffer& target(DrawStyle style) const {
+        return style == DrawStyle::textured ? framebuffer : wire_framebuffer;
+    }
+    void draw_backdrop(DrawStyle style, const DrawFrame& frame) const;
+    bool below_ground(const DrawFrame& frame) const;
+    PixelRect begin_shapes(DrawStyle style, const DrawFrame& frame) const;
     int height() const { return framebuffer.height() * framebuffer.supersample(); }
 };
 
@@ -114,15 +129,37 @@ void Renderer::Parts::update_block(DrawStyle style, const CameraView& view) {
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, block_buffer);
 }
 
-void Renderer::Parts::clear(Rgb background) const {
-    const Vec3f c = linear(background);
+void Renderer::Parts::draw_backdrop(DrawStyle style, const DrawFrame& frame) const {
+    target(style).begin_backdrop();
+    const Vec3f c = linear(style == DrawStyle::textured ? scene->background : scene->components_background);
     glClearColor(c.x(), c.y(), c.z(), 1);
-    glDepthMask(GL_TRUE);
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LEQUAL);
-    glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ground.draw(style, frame.camera.position);
+}
+
+/// Whether any shape reaches below the ground, which then hides it.
+bool Renderer::Parts::below_ground(const DrawFrame& frame) const {
+    bool below = false;
+    visit_bounds(*scene, frame, [&](const Vec3f& p) { below = below || p.y() < scene->ground_height; });
+    return below;
+}
+
+/// Opens the layer where shapes will be, and puts the ground's depth there; tells where.
+PixelRect Renderer::Parts::begin_shapes(DrawStyle style, const DrawFrame& frame) const {
+    // Wires and dots are drawn around their particles.
+    const int margin = static_cast<int>(2 * WireRenderer::line_width(height())) + 2;
+    const PixelRect rect = solids.any_plane() ? framebuffer.whole()
+                                              : covered_rect(*scene, frame, block.view_projection,
+                                                             framebuffer.whole(), margin);
+    if (rect.empty()) return rect;
+    target(style).begin_layer(rect);
+    if (!below_ground(frame)) return rect;
+    depth.use();
+    glUniformMatrix4fv(depth_transform, 1, GL_FALSE, block.view_projection.data());
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    ground.draw_depth(frame.camera.position);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    return rect;
 }
 
 void Renderer::Parts::draw_textured(const DrawFrame& frame) {
@@ -136,39 +173,37 @@ void Renderer::Parts::draw_textured(const DrawFrame& frame) {
         else
             cloths.draw_shapes();
     });
-    framebuffer.bind();
-    clear(scene->background);
-    shadows.bind();
-    cloths.draw_fabric();
-    glEnable(GL_CULL_FACE);
-    solids.draw_shaded(frame);
-    glDisable(GL_CULL_FACE);
+    ground.light(frame, shadows);
+    draw_backdrop(DrawStyle::textured, frame);
+    const PixelRect rect = begin_shapes(DrawStyle::textured, frame);
+    if (!rect.empty()) {
+        shadows.bind();
+        cloths.draw_fabric();
+        solids.draw_shaded(frame);
+    }
+    framebuffer.finish(rect);
 }
 
 void Renderer::Parts::draw_components(const DrawFrame& frame) {
     cloths.update_shape(frame);
-    cloths.update_colors(frame);
-    wires.update(frame);
+    wires.update(frame, cloths.update_colors(frame));
     const Vec3f centre = 0.5f * (scene->bounds_low + scene->bounds_high);
     const float gap =
         wires.spacing() * block.viewport.z() / std::max((centre - frame.camera.position).norm(), 1e-3f);
-    const float relative_gap = gap * 720 / static_cast<float>(height());
-
-    framebuffer.bind();
-    clear(scene->components_background);
-    surface.use();
+    draw_backdrop(DrawStyle::components, frame);
+    const PixelRect rect = begin_shapes(DrawStyle::components, frame);
+    if (rect.empty()) return wire_framebuffer.finish(rect);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1, 1);
-    const Eigen::Matrix4f identity = Eigen::Matrix4f::Identity();
-    glUniformMatrix4fv(surface_uniforms.model, 1, GL_FALSE, identity.data());
-    glUniform4f(surface_uniforms.tint, 0.02f, 0.022f, 0.027f, 0);
-    glUniform1i(surface_uniforms.fades, 0);
+    sheet.use();
     // The denser the springs, the more of a component's colour its surface carries.
-    glUniform1f(surface_strength, std::clamp(0.95f - 0.13f * relative_gap, 0.14f, 0.8f));
+    glUniform1f(sheet_strength, std::clamp(1.3f - 0.3f * gap, 0.1f, 1.0f));
     cloths.draw_shapes();
+    surface.use();
     solids.draw_quiet(frame, surface_uniforms);
     glDisable(GL_POLYGON_OFFSET_FILL);
     wires.draw(height(), gap);
+    wire_framebuffer.finish(rect);
 }
 
 Renderer::Renderer(const GlContext& context, const DrawScene& scene, RenderSettings settings)
@@ -187,7 +222,6 @@ void Renderer::submit(DrawStyle style, const DrawFrame& frame) {
         parts_->draw_textured(frame);
     else
         parts_->draw_components(frame);
-    parts_->framebuffer.resolve();
     parts_->readback.start();
 }
 

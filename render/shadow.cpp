@@ -31,19 +31,12 @@ void make_depth_map(GLuint texture, GLuint framebuffer, int width, int height) {
     glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, width, height, 0, GL_DEPTH_COMPONENT,
                  GL_UNSIGNED_INT, nullptr);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, texture, 0);
     glDrawBuffer(GL_NONE);
     glReadBuffer(GL_NONE);
-}
-
-void make_sampler(GLuint sampler, GLint filter, GLint compare) {
-    glSamplerParameteri(sampler, GL_TEXTURE_MIN_FILTER, filter);
-    glSamplerParameteri(sampler, GL_TEXTURE_MAG_FILTER, filter);
-    glSamplerParameteri(sampler, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glSamplerParameteri(sampler, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_MODE, compare);
-    glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
 }
 
 }  // namespace
@@ -63,8 +56,6 @@ ShadowMaps::ShadowMaps(const DrawScene& scene, int key_size)
     }
     make_depth_map(key_map_, key_target_, key_size_, key_size_);
     make_depth_map(sky_maps_, sky_target_, columns * tile, rows * tile);
-    make_sampler(compare_, GL_LINEAR, GL_COMPARE_REF_TO_TEXTURE);
-    make_sampler(depth_, GL_NEAREST, GL_NONE);
 }
 
 void ShadowMaps::describe(FrameBlock& block) const {
@@ -75,8 +66,7 @@ void ShadowMaps::describe(FrameBlock& block) const {
             to_texture(width, height, (k % columns) * width, (k / columns) * height) * sky_transforms_[k];
         block.sky_direction[k] << sky_directions_[k], 0;
     }
-    // A lamp about six degrees across: penumbras as wide as a twentieth of the distance to what casts them.
-    block.key_direction << key_direction_, 0.05f;
+    block.key_direction << key_direction_, lamp;
     block.shadow << 2 * radius_ / key_size_, 2 * radius_, 2 * radius_ / tile, 0;
 }
 
@@ -86,6 +76,7 @@ void ShadowMaps::draw(const DrawCasters& draw_casters) const {
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);  // a cloth has no inside
+    glEnable(GL_DEPTH_CLAMP);  // what has moved out of the scene's bounds casts all the same
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1.5f, 2);
     glBindFramebuffer(GL_FRAMEBUFFER, key_target_);
@@ -101,21 +92,21 @@ void ShadowMaps::draw(const DrawCasters& draw_casters) const {
         draw_casters(sky_transforms_[k], true);
     }
     glDisable(GL_POLYGON_OFFSET_FILL);
+    glDisable(GL_DEPTH_CLAMP);
 }
 
 void ShadowMaps::bind() const {
-    const auto bind_unit = [](int unit, GLuint texture, GLuint sampler) {
+    const auto bind_unit = [](int unit, GLuint texture) {
         glActiveTexture(GL_TEXTURE0 + unit);
         glBindTexture(GL_TEXTURE_2D, texture);
-        glBindSampler(unit, sampler);
     };
-    bind_unit(unit_depth, key_map_, depth_);
-    bind_unit(unit_sky, sky_maps_, compare_);
+    bind_unit(unit_key, key_map_);
+    bind_unit(unit_sky, sky_maps_);
 }
 
 void ShadowMaps::connect(const GlProgram& program) {
-    program.sampler("shadow_depth", unit_depth);
-    program.sampler("sky_maps", unit_sky);
+    program.sampler("shadow_depth", unit_key);
+    program.sampler("sky_depth", unit_sky);
 }
 
 }  // namespace unravel

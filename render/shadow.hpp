@@ -12,6 +12,8 @@ namespace unravel {
 /// over the sky, whose mean tells each vertex how open it lies (ambient occlusion from the true geometry).
 class ShadowMaps {
 public:
+    static constexpr float lamp = 0.05f;  ///< tangent of the key light's radius: about six degrees across
+
     /// `draw(transform, coarse)` draws everything that casts a shadow, world to clip space; coarsely for
     /// small maps.
     using DrawCasters = std::function<void(const Eigen::Matrix4f& transform, bool coarse)>;
@@ -29,7 +31,7 @@ public:
 
 private:
     static constexpr int tile = 256, columns = 4, rows = 2;
-    static constexpr int unit_depth = 1, unit_sky = 2;
+    static constexpr int unit_key = 1, unit_sky = 2;
 
     int key_size_;
     float radius_;
@@ -39,7 +41,6 @@ private:
     std::array<Vec3f, FrameBlock::sky_directions> sky_directions_;
     GlTexture key_map_, sky_maps_;
     GlFramebuffer key_target_, sky_target_;
-    GlSampler compare_, depth_;
 };
 
 }  // namespace unravel

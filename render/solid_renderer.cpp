@@ -16,7 +16,7 @@ SolidRenderer::SolidRenderer(const DrawScene& scene)
     : scene_(&scene),
       centre_(0.5f * (scene.bounds_low + scene.bounds_high)),
       reach_(2.5f * (scene.bounds_high - scene.bounds_low).norm()),
-      shaded_({"frame.glsl", "sky.glsl", "solid.vert"}, {"frame.glsl", "light.glsl", "solid.frag"}),
+      shaded_({"frame.glsl", "light.glsl", "sky.glsl", "solid.vert"}, {"frame.glsl", "light.glsl", "pattern.glsl", "solid.frag"}),
       model_(shaded_.uniform("model")),
       albedo_(shaded_.uniform("albedo")),
       gloss_(shaded_.uniform("gloss")),
@@ -29,13 +29,11 @@ SolidRenderer::SolidRenderer(const DrawScene& scene)
             parts_.push_back({Mesh(tessellate(solid)), Mesh(tessellate(solid, 0.4f)), static_cast<int>(i),
                               false, linear(solid.color)});
     }
-    // What covers most of the picture comes last: little of it is left to shade.
+    // Planes come last: where they fade, what stands behind them is to be seen.
     for (std::size_t i = 0; i < scene.solids.size(); ++i)
         if (scene.solids[i].shape == SolidShape::plane)
             parts_.push_back({Mesh(tessellate_ground(reach_)), Mesh({}), static_cast<int>(i), true,
                               linear(scene.solids[i].color)});
-    if (scene.show_ground)
-        parts_.push_back({Mesh(tessellate_ground(reach_)), Mesh({}), -1, true, linear(scene.ground)});
 }
 
 SolidRenderer::Mesh::Mesh(const Tessellation& shape) : count(static_cast<GLsizei>(shape.indices.size())) {
@@ -58,16 +56,11 @@ void SolidRenderer::Mesh::draw() const {
 }
 
 Eigen::Matrix4f SolidRenderer::pose(const Part& part, const DrawFrame& frame) const {
-    Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
-    if (part.solid >= 0) {
-        pose = frame.solid_poses[part.solid];
-        if (part.fades) {
-            // An endless plane: its mesh follows to the point below the scene's centre.
-            const Vec3f normal = pose.linear().col(1);
-            pose.translation() = centre_ - normal * normal.dot(centre_ - pose.translation());
-        }
-    } else {
-        pose.translation() = Vec3f(centre_.x(), scene_->ground_height, centre_.z());
+    Eigen::Isometry3f pose = frame.solid_poses[part.solid];
+    if (part.fades) {
+        // An endless plane: its mesh follows to the point below the scene's centre.
+        const Vec3f normal = pose.linear().col(1);
+        pose.translation() = centre_ - normal * normal.dot(centre_ - pose.translation());
     }
     return pose.matrix();
 }
@@ -83,6 +76,8 @@ void SolidRenderer::draw_shapes(const DrawFrame& frame, GLint transform_uniform,
 }
 
 void SolidRenderer::draw_shaded(const DrawFrame& frame) const {
+    glEnable(GL_CULL_FACE);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     shaded_.use();
     for (const Part& part : parts_) {
         const Eigen::Matrix4f matrix = pose(part, frame);
@@ -92,11 +87,15 @@ void SolidRenderer::draw_shaded(const DrawFrame& frame) const {
         glUniform1f(gloss_, part.fades ? 0.15f : 1.f);
         glUniform1i(fades_, part.fades);
         glUniform3fv(fade_centre_, 1, middle.data());
+        if (part.fades) glEnable(GL_BLEND);
         part.fine.draw();
     }
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
 }
 
 void SolidRenderer::draw_quiet(const DrawFrame& frame, const SurfaceUniforms& uniforms) const {
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     for (const Part& part : parts_) {
         Eigen::Matrix4f matrix = pose(part, frame);
         const Vec3f middle = matrix.block<3, 1>(0, 3);
@@ -106,11 +105,13 @@ void SolidRenderer::draw_quiet(const DrawFrame& frame, const SurfaceUniforms& un
             part.fades ? Vec3f(2.2f * background) : Vec3f(3.5f * background + Vec3f::Constant(0.04f));
         if (part.fades) matrix.block<3, 3>(0, 0) *= quiet_ground;
         glUniformMatrix4fv(uniforms.model, 1, GL_FALSE, matrix.data());
-        glUniform4f(uniforms.tint, tint.x(), tint.y(), tint.z(), 1);
+        glUniform3fv(uniforms.tint, 1, tint.data());
         glUniform1i(uniforms.fades, part.fades);
         glUniform3fv(uniforms.fade_centre, 1, middle.data());
+        if (part.fades) glEnable(GL_BLEND);
         part.fine.draw();
     }
+    glDisable(GL_BLEND);
 }
 
 }  // namespace unravel

@@ -8,14 +8,14 @@
 
 namespace unravel {
 
-/// Solids, planes and the ground. Planes and the ground fade into the background with distance from the
-/// scene.
+/// Solids. Planes fade away with distance from the scene.
 class SolidRenderer {
 public:
     explicit SolidRenderer(const DrawScene& scene);
 
-    /// How far planes and ground go from the scene's centre [m].
+    /// How far planes go from the scene's centre [m].
     float reach() const { return reach_; }
+    bool any_plane() const { return !parts_.empty() && parts_.back().fades; }
 
     /// What casts shadows, by the program in use, whose matrix `transform` is set for each. `coarse`: for
     /// small maps.
@@ -39,7 +39,7 @@ private:
     };
     struct Part {
         Mesh fine, coarse;
-        int solid = -1;  ///< −1: the ground
+        int solid = 0;
         bool fades = false;
         Vec3f albedo;  ///< linear
     };

@@ -4,6 +4,12 @@
 
 namespace unravel {
 
+namespace {
+
+constexpr float invisible_gap = 1.2f;  // px; wire.vert lets springs vanish as they come near it
+
+}  // namespace
+
 void WireRenderer::make_table(const Table& table, GLenum format, std::size_t bytes) {
     // A table of nothing is not allowed: keep room for one entry.
     allocate_buffer(GL_TEXTURE_BUFFER, table.buffer, std::max<std::size_t>(bytes, 16));
@@ -12,8 +18,8 @@ void WireRenderer::make_table(const Table& table, GLenum format, std::size_t byt
 }
 
 WireRenderer::WireRenderer(const DrawScene& scene)
-    : wire_({"frame.glsl", "wire.vert"}, {"wire.frag"}),
-      dot_({"frame.glsl", "dot.vert"}, {"dot.frag"}),
+    : wire_({"frame.glsl", "color.glsl", "wire.vert"}, {"wire.frag"}),
+      dot_({"frame.glsl", "color.glsl", "dot.vert"}, {"dot.frag"}),
       width_(wire_.uniform("width")),
       wire_spacing_(wire_.uniform("spacing")),
       radius_(dot_.uniform("radius")) {
@@ -38,7 +44,6 @@ WireRenderer::WireRenderer(const DrawScene& scene)
     update_buffer(GL_TEXTURE_BUFFER, edge_table_.buffer, edges);
     solid_.assign(edges_, 255);
     scratch_points_.resize(particles_);
-    scratch_colors_.resize(particles_);
 
     // Two triangles for each quad: vertices 4 k … 4 k + 3.
     std::vector<std::uint32_t> quads;
@@ -59,15 +64,13 @@ WireRenderer::WireRenderer(const DrawScene& scene)
     dot_.sampler("colors", 1);
 }
 
-void WireRenderer::update(const DrawFrame& frame) {
+void WireRenderer::update(const DrawFrame& frame, std::span<const std::array<std::uint8_t, 4>> colors) {
     for (std::size_t i = 0; i < particles_; ++i) {
         const Vec3f& p = frame.positions[i];
-        const Rgb c = frame.particle_colors[i];
         scratch_points_[i] = {p.x(), p.y(), p.z(), 1};
-        scratch_colors_[i] = {c.r, c.g, c.b, 255};
     }
     update_buffer(GL_TEXTURE_BUFFER, points_.buffer, scratch_points_);
-    update_buffer(GL_TEXTURE_BUFFER, colors_.buffer, scratch_colors_);
+    update_buffer(GL_TEXTURE_BUFFER, colors_.buffer, colors);
     update_buffer(GL_TEXTURE_BUFFER, strengths_.buffer,
                   frame.edge_strength.empty() ? solid_ : frame.edge_strength);
 }
@@ -81,10 +84,11 @@ void WireRenderer::bind_tables() const {
 }
 
 void WireRenderer::draw(int height, float gap) const {
+    if (gap < invisible_gap) return;
     bind_tables();
     glBindVertexArray(vertex_array_);
     glEnable(GL_BLEND);
-    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     glDepthMask(GL_FALSE);
     wire_.use();
     glUniform1f(width_, line_width(height));
@@ -93,7 +97,7 @@ void WireRenderer::draw(int height, float gap) const {
 
     // Dots only where they leave the lines between them in sight.
     const float radius = std::min(1.6f * line_width(height), 0.2f * gap);
-    if (radius > 0.8f * line_width(height)) {
+    if (radius > 1.1f * line_width(height)) {
         dot_.use();
         glUniform1f(radius_, radius);
         glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * particles_), GL_UNSIGNED_INT, nullptr);

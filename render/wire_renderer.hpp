@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "render/draw_scene.hpp"
 #include "render/gl_objects.hpp"
 
@@ -11,11 +13,12 @@ class WireRenderer {
 public:
     explicit WireRenderer(const DrawScene& scene);
 
-    void update(const DrawFrame& frame);
+    /// `colors` (particles): sRGB.
+    void update(const DrawFrame& frame, std::span<const std::array<std::uint8_t, 4>> colors);
     /// Typical length of a spring at rest [m].
     float spacing() const { return spacing_; }
     /// `height`: of the picture being drawn [px]; `gap`: pixels between neighbouring particles at the scene's
-    /// centre.
+    /// centre. Nothing is drawn where springs are too dense to be told apart.
     void draw(int height, float gap) const;
 
     /// Width of a line [px] in a picture of this height, where springs are not too dense for it.
@@ -33,7 +36,6 @@ private:
     std::size_t particles_ = 0, edges_ = 0;
     float spacing_ = 0.01f;
     std::vector<std::array<float, 4>> scratch_points_;
-    std::vector<std::array<std::uint8_t, 4>> scratch_colors_;
     std::vector<std::uint8_t> solid_;  ///< (edges) 255: what an empty edge_strength means
     Table points_, colors_, edge_table_, strengths_;
     GlVertexArray vertex_array_;

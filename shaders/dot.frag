@@ -3,4 +3,4 @@ in vec2 within;
 flat in vec3 dot_color;
 out vec4 color;
 
-void main() { color = vec4(dot_color, clamp(radius + 0.5 - length(within), 0.0, 1.0)); }
+void main() { color = vec4(dot_color, 1.0) * clamp(radius + 0.5 - length(within), 0.0, 1.0); }

@@ -14,5 +14,5 @@ void main() {
     within = corner * (radius + 0.5);
     clip.xy += within / (0.5 * viewport.xy) * clip.w;
     gl_Position = clip;
-    dot_color = pow(texelFetch(colors, particle).rgb, vec3(2.2));
+    dot_color = linear(texelFetch(colors, particle).rgb);
 }

@@ -1,44 +1,57 @@
 // Key light with soft shadows, hemisphere of ambient light, tone curve.
-uniform sampler2D shadow_depth;
+uniform sampler2D shadow_depth;  // from the key light
+uniform sampler2D sky_depth;     // from the sky's directions, in tiles
 
-// Share of the key light that reaches p, whose surface faces the light along n (dot(n, l) > 0).
+// Depth in a tile of a map at [0, 1]². By texel: no filter and no level of detail to be worked out.
+float depth_at(sampler2D depths, vec2 at, ivec4 tile) {
+    return texelFetch(depths, tile.xy + clamp(ivec2(at * vec2(tile.zw)), ivec2(0), tile.zw - 1), 0).r;
+}
+
+// Share of a lamp that is seen from `at`, in the lamp's map: x, y in [0, 1] over its tile (corner and size in
+// texels), z a depth.
 // Percentage-closer soft shadows: the mean distance of blockers sets the width of the penumbra. [Fernando 2005]
-float key_visibility(vec3 p, vec3 n) {
-    float slope = 1.0 - dot(n, key_direction.xyz);
-    vec3 at = (shadow_matrix * vec4(p + n * shadow.x * (0.8 + 2.0 * slope), 1.0)).xyz;
-    bool inside = all(greaterThan(at, vec3(0.0))) && all(lessThan(at, vec3(1.0)));
-
-    // Turn the disk by one of 16 angles of a 4 × 4 ordered pattern: neighbours see different rings.
-    ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
-    float angle = float(((cell.x ^ cell.y) & 1) * 8 + (cell.y & 1) * 4 + (((cell.x ^ cell.y) >> 1) & 1) * 2 +
-                        ((cell.y >> 1) & 1)) * (6.2831853 / 16.0);
-    vec2 spoke = vec2(cos(angle), sin(angle));
+//   source   tangent of the lamp's radius
+//   slope    how steeply the receiver's own surface may rise within the disk, so as not to block itself
+//   turn     angle by which the disk of lookups is turned
+float soft_visibility(sampler2D depths, vec3 at, ivec4 tile, float source, float slope, float turn, int searches,
+                      int taps) {
+    // Nothing casts from beyond the map's sides; beyond its far end there are only receivers.
+    bool inside = all(greaterThan(at.xy, vec2(0.0))) && all(lessThan(at.xy, vec2(1.0)));
+    // Loops that need no lookup get a length of none: measured on llvmpipe, which spends on a branch that no pixel of
+    // a block takes as much as on one that all take, but leaves a loop at once.
+    if (!inside) searches = 0;
     const mat2 golden = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);
-
-    // Loops of a length known only here: rasterisers on the CPU run both sides of an if for every pixel, but leave a
-    // loop that no pixel needs.
-    float search = 0.35 * key_direction.w;  // blockers up to 0.35 of the map's extent away
+    vec2 spoke = vec2(cos(turn), sin(turn));
+    float search = 0.35 * source;  // blockers up to 0.35 of the map's extent away
     float sum = 0.0, count = 0.0;
-    int taps = inside ? 6 : 0;
-    for (int i = 0; i < taps; ++i) {
-        float r = sqrt((float(i) + 0.5) / 6.0) * search;
+    for (int i = 0; i < searches; ++i) {
+        float r = sqrt((float(i) + 0.5) / float(searches)) * search;
         spoke = golden * spoke;
-        float depth = texture(shadow_depth, at.xy + spoke * r).r;
-        // The receiver's own plane is no blocker: allow for its slope within the disk.
-        if (depth < at.z - 0.002 - 0.5 * r) {
+        float depth = depth_at(depths, at.xy + spoke * r, tile);
+        if (depth < min(at.z - 0.002 - slope * r, 1.0)) {
             sum += depth;
             count += 1.0;
         }
     }
-    float width = max(shadow.x / shadow.y, (at.z - sum / max(count, 1.0)) * key_direction.w);
+    // None or all in the way: full light or none.
+    bool rim = count > 0.0 && count < float(searches);
+    if (!rim) taps = 0;
+    float width = max(shadow.x / shadow.y, (at.z - sum / max(count, 1.0)) * source);
     float lit = 0.0;
-    taps = count > 0.0 ? 12 : 0;
     for (int i = 0; i < taps; ++i) {
-        float r = sqrt((float(i) + 0.5) / 12.0) * width;
+        float r = sqrt((float(i) + 0.5) / float(taps)) * width;
         spoke = golden * spoke;
-        lit += step(at.z - 0.35 * r - 0.0004, texture(shadow_depth, at.xy + spoke * r).r);
+        lit += step(min(at.z - 0.0004 - 0.7 * slope * r, 1.0),
+                    depth_at(depths, at.xy + spoke * r, tile));
     }
-    return count > 0.0 ? lit / 12.0 : 1.0;
+    return rim ? lit / float(taps) : count == 0.0 ? 1.0 : 0.0;
+}
+
+// Share of the key light that reaches p, whose surface faces the light along n (dot(n, l) > 0).
+float key_visibility(vec3 p, vec3 n, float turn) {
+    float away = 1.0 - dot(n, key_direction.xyz);
+    vec3 at = (shadow_matrix * vec4(p + n * shadow.x * (0.8 + 2.0 * away), 1.0)).xyz;
+    return soft_visibility(shadow_depth, at, ivec4(ivec2(0), textureSize(shadow_depth, 0)), key_direction.w, 0.5, turn, 6, 12);
 }
 
 // Light from all around at normal n, as if nothing stood in the way.

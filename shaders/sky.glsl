@@ -1,15 +1,17 @@
 // How much of the sky a vertex sees: depth maps from SKY_DIRECTIONS directions, looked up once a vertex.
-uniform sampler2DShadow sky_maps;
+// Needs light.glsl.
 
+// Four lookups far apart: each direction stands for a broad cone of sky, so the edge of its shadow is to be soft.
 float sky_visibility(int k, vec3 p) {
     vec3 at = (sky_matrix[k] * vec4(p, 1.0)).xyz;
-    vec2 tile = vec2(k % 4, k / 4);
+    ivec2 size = textureSize(sky_depth, 0) / ivec2(4, 2);
+    ivec4 tile = ivec4(ivec2(k % 4, k / 4) * size, size);
+    vec2 within = at.xy * vec2(4.0, 2.0) - vec2(k % 4, k / 4);
     // Beyond its tile nothing stands in the way.
-    vec2 inside = at.xy * vec2(4.0, 2.0) - tile;
-    if (any(lessThan(inside, vec2(0.02))) || any(greaterThan(inside, vec2(0.98)))) return 1.0;
-    // Far apart: each direction stands for a broad cone of sky, so its edge is to be soft.
-    vec2 a = vec2(1.4, k % 2 == 0 ? 1.4 : -1.4) / vec2(textureSize(sky_maps, 0));
-    return 0.5 * (texture(sky_maps, vec3(at.xy + a, at.z)) + texture(sky_maps, vec3(at.xy - a, at.z)));
+    if (any(lessThan(within, vec2(0.02))) || any(greaterThan(within, vec2(0.98)))) return 1.0;
+    vec2 a = vec2(1.9, 0.8) / vec2(size), b = vec2(-a.y, a.x);
+    return 0.25 * (step(at.z, depth_at(sky_depth, within + a, tile)) + step(at.z, depth_at(sky_depth, within - a, tile)) +
+                   step(at.z, depth_at(sky_depth, within + b, tile)) + step(at.z, depth_at(sky_depth, within - b, tile)));
 }
 
 // Cosine-weighted open share of the sky above either side of a surface: x for the side n points to, y for the other.

@@ -1,4 +1,4 @@
-// Solids and ground: matt, with a broad highlight; the ground fades into the background.
+// Solids: matt, with a broad highlight; planes fade away with distance.
 uniform vec3 albedo;
 uniform float gloss;   // strength of the highlight
 uniform bool fades;
@@ -19,7 +19,7 @@ void main() {
         // Normalised Blinn–Phong of exponent 24, dimmed to a dielectric's 4% and rising at grazing angles.
         float grazing = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 5.0);
         float highlight = gloss * (0.04 + 0.5 * grazing) * (26.0 / 8.0) * pow(nh, 24.0);
-        result += (albedo + highlight) * key_color.rgb * (nl * key_visibility(world, n));
+        result += (albedo + highlight) * key_color.rgb * (nl * key_visibility(world, n, pattern_turn()));
     }
-    color = vec4(mix(tone(result), background.rgb, fade), 1.0);
+    color = vec4(tone(result), 1.0) * (1.0 - fade);
 }

@@ -7,5 +7,5 @@ out vec4 color;
 
 void main() {
     float cover = clamp(pen.x + 0.5 - abs(across), 0.0, 1.0);
-    color = vec4(mix(color_a, color_b, smoothstep(0.42, 0.58, along)), cover * pen.y);
+    color = vec4(mix(color_a, color_b, smoothstep(0.42, 0.58, along)), 1.0) * (cover * pen.y);
 }

@@ -35,8 +35,8 @@ void main() {
     // Where springs stand closer than the pen is wide, a finer pen keeps them apart; below a pixel it pales instead.
     float gap = spacing * viewport.z / max(0.5 * (ca.w + cb.w), 1e-3);
     float fine = min(width, max(0.24 * gap, 0.25)), half_width = 0.5 * max(fine, 1.0);
-    // Among wires too dense to be told apart the surface's shading shows the shape.
-    pen = vec2(half_width, strength * min(fine, 1.0) * mix(0.35, 1.0, smoothstep(1.0, 4.0, gap)));
+    // Wires too dense to be told apart leave the field to the surface.
+    pen = vec2(half_width, strength * min(fine, 1.0) * smoothstep(1.2, 4.0, gap));
 
     float reach = half_width + 0.5;
     vec4 clip = end < 0.5 ? ca : cb;
@@ -45,6 +45,6 @@ void main() {
     gl_Position = clip;
     across = side * reach;
     along = end;
-    color_a = pow(texelFetch(colors, int(ends.x)).rgb, vec3(2.2));
-    color_b = pow(texelFetch(colors, int(ends.y)).rgb, vec3(2.2));
+    color_a = linear(texelFetch(colors, int(ends.x)).rgb);
+    color_b = linear(texelFetch(colors, int(ends.y)).rgb);
 }

@@ -1,0 +1,66 @@
+#include "render/bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace unravel {
+
+namespace {
+
+/// Half extents of a box around a solid in its own frame [m].
+Vec3f half_extents(const SolidMesh& solid) {
+    switch (solid.shape) {
+        case SolidShape::plane:
+            return Vec3f::Zero();
+        case SolidShape::sphere:
+            return Vec3f::Constant(solid.radius);
+        case SolidShape::box:
+            return 0.5f * solid.size;
+        case SolidShape::cylinder:
+            return {solid.radius, 0.5f * solid.height, solid.radius};
+        case SolidShape::capsule:
+            return {solid.radius, 0.5f * solid.height + solid.radius, solid.radius};
+    }
+    return Vec3f::Zero();
+}
+
+}  // namespace
+
+void visit_bounds(const DrawScene& scene, const DrawFrame& frame,
+                  const std::function<void(const Vec3f&)>& visit) {
+    for (const ClothMesh& mesh : scene.cloths)
+        for (const std::uint32_t p : mesh.particle) visit(frame.positions[p]);
+    for (std::size_t s = 0; s < scene.solids.size(); ++s) {
+        if (scene.solids[s].shape == SolidShape::plane) continue;
+        const Vec3f half = half_extents(scene.solids[s]);
+        for (int corner = 0; corner < 8; ++corner) {
+            const Vec3f sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+            visit(frame.solid_poses[s] * Vec3f(half.cwiseProduct(sign)));
+        }
+    }
+}
+
+PixelRect covered_rect(const DrawScene& scene, const DrawFrame& frame, const Eigen::Matrix4f& view_projection,
+                       const PixelRect& whole, int margin) {
+    constexpr float least_depth = 1e-3f;
+    Vec2f low = Vec2f::Constant(2), high = Vec2f::Constant(-2);  // in clip space, where the picture is [−1, 1]²
+    bool behind = false;
+    visit_bounds(scene, frame, [&](const Vec3f& p) {
+        const Eigen::Vector4f clip = view_projection * p.homogeneous();
+        behind = behind || !(clip.w() > least_depth);
+        const Vec2f at = clip.head<2>() / std::max(clip.w(), least_depth);
+        low = low.cwiseMin(at);
+        high = high.cwiseMax(at);
+    });
+    if (behind) return whole;
+    const auto pixel = [&](float at, int size) {
+        return static_cast<int>(std::floor(0.5f * (std::clamp(at, -2.f, 2.f) + 1) * static_cast<float>(size)));
+    };
+    const int left = std::max(pixel(low.x(), whole.width) - margin, 0);
+    const int bottom = std::max(pixel(low.y(), whole.height) - margin, 0);
+    const int right = std::min(pixel(high.x(), whole.width) + 1 + margin, whole.width);
+    const int top = std::min(pixel(high.y(), whole.height) + 1 + margin, whole.height);
+    return {left, bottom, right - left, top - bottom};
+}
+
+}  // namespace unravel

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <functional>
+
+#include "render/draw_scene.hpp"
+#include "render/framebuffer.hpp"
+
+namespace unravel {
+
+/// Calls `visit` with points whose convex hull holds all cloths and solids of a frame: every particle, and
+/// eight corners around each solid. Planes have no end and are left out.
+void visit_bounds(const DrawScene& scene, const DrawFrame& frame,
+                  const std::function<void(const Vec3f&)>& visit);
+
+/// The part of a target of `whole`'s size that the frame's shapes may touch, `margin` pixels more on every
+/// side. All of it where something reaches behind the camera.
+PixelRect covered_rect(const DrawScene& scene, const DrawFrame& frame, const Eigen::Matrix4f& view_projection,
+                       const PixelRect& whole, int margin);
+
+}  // namespace unravel

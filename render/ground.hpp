@@ -1,0 +1,47 @@
+#pragma once
+
+#include "render/draw_scene.hpp"
+#include "render/framebuffer.hpp"
+#include "render/gl_objects.hpp"
+#include "render/shadow.hpp"
+
+namespace unravel {
+
+/// The ground below a scene, fading into the background with distance. It fills most of the picture and has
+/// no detail of its own, so its light is computed once a frame in a map that lies on it, and looked up from
+/// there.
+class Ground {
+public:
+    /// `reach`: how far it goes from the scene's centre [m]; `map_size`: texels along the map's longer side.
+    Ground(const DrawScene& scene, float reach, int map_size);
+
+    /// Lights the map by this frame's shadow maps, which are to be bound.
+    void light(const DrawFrame& frame, const ShadowMaps& shadows) const;
+    /// Draws into the backdrop: lit, or as a faint patch for the component view.
+    void draw(DrawStyle style, const Vec3f& eye) const;
+    /// Its depth alone, by the program in use, whose matrix is `transform`: hides what lies under it.
+    void draw_depth(const Vec3f& eye) const;
+
+private:
+    static constexpr int open_size = 64;  ///< openness to the sky varies slowly
+    static constexpr int first_unit = 3;  ///< texture units before are the shadow maps'
+    static constexpr float fade_begin = 0.2f, fade_end = 0.95f;  ///< of its reach
+
+    bool seen_from(const Vec3f& eye) const { return scene_->show_ground && eye.y() > scene_->ground_height; }
+    PixelRect shadow_rect(const DrawFrame& frame) const;
+    void draw_square() const;
+
+    const DrawScene* scene_;
+    Vec3f key_, centre_;
+    float reach_;
+    Eigen::Array2f low_, extent_;  ///< x and z of the map's corner, and its size [m]
+    int width_, height_;           ///< of the map [px]
+    GlProgram open_, visible_, lit_, shown_;
+    GLint lit_shadowed_, shown_fade_;
+    GlTexture open_map_, visible_map_, lit_map_, plain_map_;
+    GlFramebuffer open_target_, visible_target_, lit_target_;
+    GlVertexArray square_;
+    GlBuffer corners_;
+};
+
+}  // namespace unravel

@@ -1,0 +1,18 @@
+// The mean of a pixel's samples, in linear light and premultiplied by coverage.
+#if SAMPLES > 1
+uniform sampler2DMS layer;
+#else
+uniform sampler2D layer;
+#endif
+out vec4 color;
+
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+#if SAMPLES > 1
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < SAMPLES; ++i) sum += texelFetch(layer, at, i);
+    color = sum / float(SAMPLES);
+#else
+    color = texelFetch(layer, at, 0);
+#endif
+}

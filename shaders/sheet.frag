@@ -1,0 +1,4 @@
+in vec3 surface_color;
+out vec4 color;
+
+void main() { color = vec4(surface_color, 1.0); }
