@@ -150,14 +150,16 @@ void ClothRenderer::update_shape(const DrawFrame& frame) {
 }
 
 std::span<const std::array<std::uint8_t, 4>> ClothRenderer::update_colors(const DrawFrame& frame) {
+    // A lamp above the viewer's left shoulder, which lights all sides of folds differently.
+    const Vec3f back = (frame.camera.position - frame.camera.target).normalized();
+    const Vec3f left = back.cross(frame.camera.up).normalized();
+    const Vec3f lamp = (back + 0.6f * left + 0.5f * frame.camera.up).normalized();
     for (const Cloth& cloth : cloths_) {
         const std::vector<std::uint32_t>& particle = cloth.mesh->particle;
         for (const std::uint32_t p : particle) {
-            const Vec3f view = (frame.camera.position - frame.positions[p]).normalized();
-            const float facing = normals_[p].dot(view);
-            // Which way the side that is seen looks: sideways and down are darker. Factors of encoded colours.
-            const float above = facing >= 0 ? normals_[p].y() : -normals_[p].y();
-            const float shade = 0.72f + 0.2f * std::abs(facing) + 0.08f * above;
+            const bool front = normals_[p].dot(frame.camera.position - frame.positions[p]) >= 0;
+            const float lit = (front ? 1.f : -1.f) * normals_[p].dot(lamp);
+            const float shade = std::min(0.67f + 0.36f * (0.5f + 0.5f * lit), 1.f);  // of encoded colours
             const auto channel = [&](std::uint8_t c) {
                 return static_cast<std::uint8_t>(shade * static_cast<float>(c) + 0.5f);
             };

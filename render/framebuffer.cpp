@@ -88,11 +88,11 @@ void Framebuffer::begin_backdrop() const {
 
 void Framebuffer::begin_layer(const PixelRect& rect) const {
     glBindFramebuffer(GL_FRAMEBUFFER, layer_);
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(rect.x, rect.y, rect.width, rect.height);
     glDepthMask(GL_TRUE);
     glClearColor(0, 0, 0, 0);
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);  // all of it: a rectangle would be drawn, not cleared
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(rect.x, rect.y, rect.width, rect.height);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);
     if (samples_ > 1) glEnable(GL_MULTISAMPLE);
