@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/draw_scene.hpp"
 #include "sim/simulate.hpp"
 
 namespace unravel {
