@@ -19,9 +19,9 @@ namespace unravel {
 
 struct StepOptions {
     Integrator integrator = Integrator::adaptive_imex;
-    double threshold = 0.2;                     ///< of adaptive IMEX on κ (7)
-    Activation activation = Activation::start;  ///< when a slack spring becomes implicit
-    double activation_band = 0.0;               ///< see extension_forces()
+    double threshold = 0.2;                         ///< of adaptive IMEX on κ (7)
+    Activation activation = Activation::predicted;  ///< when a slack spring becomes implicit
+    double activation_band = 0.0;                   ///< see extension_forces()
     SolveOptions solve;
     bool decompose = true;       ///< false: the whole cloth as one system
     bool compare_whole = false;  ///< solve the undecomposed system too and report what it took

@@ -68,7 +68,7 @@ bool claim_pictures(const RunFolder& folder, DrawStyle style, const std::string&
     const fs::path file = stamp_file(folder, style);
     if (fs::exists(file)) {
         const std::vector<std::uint8_t> before = read_whole_file(file, largest_stamp);
-        if (std::equal(before.begin(), before.end(), stamp.begin(), stamp.end())) return true;
+        if (std::string(before.begin(), before.end()) == stamp) return true;
         // First of all: were the program to end here, nothing would vouch for the old pictures.
         fs::remove(file);
     }

@@ -157,7 +157,7 @@ struct Solver {
     double tolerance = 1e-3;    ///< relative preconditioned residual
     int max_iterations = 2000;  ///< of CG, per component
     bool decompose = true;      ///< false: one system over all particles
-    Activation activation = Activation::start;
+    Activation activation = Activation::predicted;
     double activation_band = 0.0;  ///< springs with l > (1 − band) L get their Jacobian, but no force
     std::optional<AdaptiveStep> adaptive;  ///< absent: every step is `step`
 };

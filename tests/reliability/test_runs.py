@@ -121,7 +121,7 @@ def test_kills_at_random_leave_whole_files_and_resume_ends_with_the_same_bytes(r
         while done < kills:
             # Later than the whole run takes would be no kill: such a process ends by itself.
             process = start(job(out, *(["--resume"] if out.exists() else []), command=command))
-            time.sleep(dice.uniform(0, (1.0 if command == "run" else 0.15) * reference.seconds))
+            time.sleep(dice.uniform(0, (0.7 if command == "run" else 0.1) * reference.seconds))
             process.kill()
             process.communicate(timeout=PATIENCE)
             ended = process.returncode != -signal.SIGKILL

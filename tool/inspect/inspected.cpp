@@ -37,7 +37,7 @@ InspectedStep inspect_step(const Scene& scene, const RunFolder& folder, int fram
         out.report = next_step(out.simulation);
     }
     out.simulation.frame = frame;
-    out.record = first_record(out.simulation);
+    out.record = present_record(out.simulation);
     out.colors = colors.assign(out.record.component, edges);
     out.components =
         component_table(model, out.record.component, out.record.springs, out.record.solves, out.colors);

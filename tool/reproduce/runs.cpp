@@ -62,7 +62,7 @@ SceneRun run_scene(const Scene& scene, int threads, bool compare_whole) {
     tbb::task_arena arena(threads);
     Simulation simulation = start_simulation(scene);
     simulation.options.compare_whole = compare_whole;
-    run.records.push_back(first_record(simulation));
+    run.records.push_back(present_record(simulation));
     for (int k = 1; k < scene.clip.frames(); ++k) {
         arena.execute([&] { run.records.push_back(next_record(simulation)); });
         const auto& reports = run.records.back().reports;

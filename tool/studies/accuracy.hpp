@@ -19,7 +19,7 @@ struct AccuracySetting {
     int steps_per_frame = 1;
     double threshold = 0.2;   ///< of the adaptive schemes
     double tolerance = 1e-3;  ///< of CG
-    Activation activation = Activation::start;
+    Activation activation = Activation::predicted;
     double band = 0;
     /// "adaptive-imex", "adaptive-imex threshold 0.05": all but the step, by which curves are drawn.
     std::string method() const;

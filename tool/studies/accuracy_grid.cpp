@@ -100,9 +100,9 @@ std::vector<AccuracySetting> accuracy_grid(const AccuracyReference& reference) {
             is_explicit ? ladder(4, 256, finest) : ladder(1, 64, finest));
     }
     const std::vector<int> few = ladder(2, 16, finest), wide = ladder(4, 64, finest);
-    for (const Activation activation : {Activation::predicted, Activation::resolve})
+    for (const Activation activation : {Activation::start, Activation::resolve})
         add(grid, {Integrator::adaptive_imex, 1, common.threshold, common.tolerance, activation, 0}, few);
-    add(grid, {Integrator::adaptive_imex, 1, common.threshold, common.tolerance, Activation::start, 0.02},
+    add(grid, {Integrator::adaptive_imex, 1, common.threshold, common.tolerance, common.activation, 0.02},
         few);
     for (const Integrator adaptive : {Integrator::adaptive_imex, Integrator::adaptive_imex2}) {
         for (const double threshold : {0.05, 0.5})

@@ -47,7 +47,7 @@ struct ReferenceHeader {
 constexpr std::size_t largest_reference = std::size_t{4} << 30;
 
 AccuracySetting reference_setting(Integrator integrator, int steps_per_frame) {
-    return {integrator, steps_per_frame, 0.2, 1e-9, Activation::start, 0};
+    return {integrator, steps_per_frame, 0.2, 1e-9, Activation::predicted, 0};
 }
 
 }  // namespace
