@@ -66,8 +66,9 @@ void air_forces(const AirCells& air, const Wind& wind, double t, double h, std::
         const Vec3 n = area_vector / area;
         const Vec3 relative = w - 0.25 * (v[p] + v[q] + v[r] + v[s]);
         const double along = n.dot(relative);
-        // The lightest corner decides how much a cell bears: a quarter of the force is on it.
-        const double bound = 4.0 * std::min({mass[p], mass[q], mass[r], mass[s]}) / h;
+        // The lightest corner decides how much a cell bears: it takes a quarter of it from each of up to four
+        // cells.
+        const double bound = std::min({mass[p], mass[q], mass[r], mass[s]}) / h;
         const double half = 0.5 * wind.density * area;
         const double drag = std::min(half * wind.drag * std::abs(along), bound);
         const double lift = std::min(half * wind.lift * relative.norm(), bound);
