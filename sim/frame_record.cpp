@@ -27,12 +27,14 @@ void members(Archive& archive, Record& r) {
     archive(r.state.t);
     archive(r.state.h_previous);
     archive(r.state.halvings);
+    archive(r.state.whole_steps);
+    archive(r.state.part);
+    archive(r.state.strain);
     archive(r.state.x);
     archive(r.state.v);
     archive(r.state.dv);
     archive(r.state.x_previous);
     archive(r.state.v_previous);
-    archive(r.state.f_previous);
     archive.list(r.state.contacts, [&](auto& c) {
         archive(c.particle);
         archive(c.solid);
@@ -67,6 +69,7 @@ void members(Archive& archive, Record& r) {
         archive(s.rvm_whole);
         archive(s.whole_difference);
         archive(s.converged);
+        archive(s.rejected);
         archive(s.contacts);
         archive(s.self_contacts);
         archive(s.self_distance);
@@ -224,8 +227,7 @@ FrameRecord parse_record(std::span<const std::uint8_t> bytes, const std::filesys
     const auto sized_or_empty = [&](const auto& v) { return v.empty() || v.size() == particles; };
     require(sized(r.state.x, particles) && sized(r.state.v, particles) && sized(r.state.dv, particles) &&
                 sized_or_empty(r.state.x_previous) && sized_or_empty(r.state.v_previous) &&
-                sized_or_empty(r.state.f_previous) && sized(r.component, particles) &&
-                sized(r.free, particles) && sized(r.springs, springs),
+                sized(r.component, particles) && sized(r.free, particles) && sized(r.springs, springs),
             file, "does not fit the scene's cloth");
     for (const Contact& c : r.state.contacts) {
         require(c.particle < particles, file, "is damaged: a contact names no particle");

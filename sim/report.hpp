@@ -31,6 +31,7 @@ struct StepReport {
     std::optional<std::uint64_t> rvm_whole;  ///< the same system undecomposed; only where it was asked for
     double whole_difference = 0;             ///< largest difference of the two solutions [m/s]
     bool converged = true;                   ///< every component reached the tolerance
+    std::uint32_t rejected = 0;              ///< adaptive step: larger steps tried before this one and undone
     std::uint32_t contacts = 0;
     /// Temporary springs of self-collision; they count as implicit or explicit too.
     std::uint32_t self_contacts = 0;

@@ -1,6 +1,9 @@
 #include "sim/simulate.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "sim/adaptive_step.hpp"
 
 namespace unravel {
 
@@ -16,6 +19,7 @@ Simulation start_simulation(const Scene& scene) {
     simulation.fps = scene.clip.fps;
     simulation.steps_per_frame = steps_per_frame(scene);
     simulation.state = initial_state(placement);
+    simulation.adaptive = scene.solver.adaptive;
     simulation.guard = make_guard(simulation.model, simulation.state);
     return simulation;
 }
@@ -43,16 +47,19 @@ FrameRecord present_record(const Simulation& simulation) {
 
 StepReport next_step(Simulation& simulation) {
     const int rate = simulation.fps * simulation.steps_per_frame;
-    StepReport report = guarded_step(simulation.model, simulation.options, 1.0 / rate, simulation.state,
-                                     simulation.ws, simulation.guard);
-    simulation.state.t = static_cast<double>(simulation.state.step) / rate;
-    report.t = simulation.state.t;
+    ClothState& state = simulation.state;
+    if (simulation.adaptive) return adaptive_step(simulation, *simulation.adaptive, rate);
+    StepReport report = guarded_step(simulation.model, simulation.options, 1.0 / rate, state, simulation.ws,
+                                     simulation.guard);
+    ++state.whole_steps;
+    report.t = state.t = static_cast<double>(state.whole_steps) / rate;
     return report;
 }
 
 FrameRecord next_record(Simulation& simulation) {
     std::vector<StepReport> reports;
-    for (int k = 0; k < simulation.steps_per_frame; ++k) reports.push_back(next_step(simulation));
+    const auto due = static_cast<std::uint64_t>(simulation.frame + 1) * simulation.steps_per_frame;
+    while (simulation.state.whole_steps < due) reports.push_back(next_step(simulation));
     ++simulation.frame;
     FrameRecord record = present_record(simulation);
     record.reports = std::move(reports);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "sim/frame_record.hpp"
 #include "sim/guard.hpp"
 #include "sim/model.hpp"
@@ -13,7 +15,8 @@ struct Simulation {
     ClothModel model;
     StepOptions options;
     int fps = 30;
-    int steps_per_frame = 1;
+    int steps_per_frame = 1;               ///< the largest steps, where the step is adaptive
+    std::optional<AdaptiveStep> adaptive;  ///< absent: every step is 1/(fps·steps_per_frame)
     ClothState state;
     int frame = 0;  ///< the last one reached
     StepWorkspace ws;

@@ -24,11 +24,14 @@ struct ClothState {
     std::vector<Vec3> x, v;         ///< (particles) [m], [m/s]
     std::vector<Vec3> dv;           ///< (particles) Δv of the last step, the next solve's first guess [m/s]
     std::vector<Contact> contacts;  ///< sorted by particle, then solid; empty without solids
-    std::uint8_t halvings = 0;      ///< adaptive step: how often the scene's step is halved at present
+    /// Adaptive step: how often the scene's step is halved at present, how many of its largest parts are
+    /// done, how many parts of the next one, and the largest strain then. All zero where the step is fixed.
+    std::uint8_t halvings = 0;
+    std::uint64_t whole_steps = 0;
+    std::uint32_t part = 0;
+    double strain = 0;
     double h_previous = 0;  ///< s, size of the last step; 0 at the start (multistep schemes then start up)
     std::vector<Vec3> x_previous, v_previous;  ///< (particles) one step ago; empty for one-step schemes
-    std::vector<Vec3>
-        f_previous;  ///< (particles) explicit forces one step ago [N]; empty unless the scheme needs them
 };
 
 }  // namespace unravel

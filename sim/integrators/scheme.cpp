@@ -17,7 +17,6 @@ const Scheme& scheme_of(Integrator choice) {
         case Integrator::adaptive_imex2:
             return sbdf2;
         case Integrator::adaptive_imex:
-        case Integrator::auto_:
             break;
     }
     return adaptive_imex;

@@ -35,7 +35,7 @@ struct Scheme {
     bool multistep = false;  ///< reads the state's x_previous, v_previous and h_previous
 };
 
-/// The scheme of a choice; `auto_` starts out as adaptive IMEX.
+/// The scheme of a choice.
 const Scheme& scheme_of(Integrator choice);
 
 extern const Scheme forward_backward_euler, backward_euler, newton_euler, fixed_imex, adaptive_imex, bdf2,

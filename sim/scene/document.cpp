@@ -1,7 +1,6 @@
 #include "sim/scene/document.hpp"
 
 // The library's own limit is 256; ours has to hold for the recursion of everything that walks the tree.
-#define TOML_MAX_NESTED_VALUES 32
 #include <toml++/toml.h>
 
 #include <algorithm>

@@ -133,8 +133,8 @@ struct Solid {
     SourcePlace place;
 };
 
-enum class Integrator { explicit_, implicit, newton, imex, adaptive_imex, bdf2, adaptive_imex2, auto_ };
-enum class Preconditioner { none, diagonal, block, constrained_block, ssor, ic0, multigrid, auto_ };
+enum class Integrator { explicit_, implicit, newton, imex, adaptive_imex, bdf2, adaptive_imex2 };
+enum class Preconditioner { none, diagonal, block, constrained_block, ssor, ic0 };
 
 /// When a spring that is slack at the start of a step begins to act within it: not before the next step
 /// (start), where the last step's motion carried on would make it taut (predicted), or where the solution

@@ -119,9 +119,11 @@ def test_kills_at_random_leave_whole_files_and_resume_ends_with_the_same_bytes(r
         out = folder / f"killed_{finished}"
         command = "run" if finished % 2 == 0 else "simulate"
         while done < kills:
-            # Later than the whole run takes would be no kill: such a process ends by itself.
+            # A random number of frames on, then a random moment: spread over the run however loaded the machine is.
+            there = len(list(out.glob("cache/frame_*.state")))
             process = start(job(out, *(["--resume"] if out.exists() else []), command=command))
-            time.sleep(dice.uniform(0, (0.7 if command == "run" else 0.1) * reference.seconds))
+            wait_for_frames(process, out, there + dice.randint(0, 4))
+            time.sleep(dice.uniform(0, 0.1 * reference.seconds))
             process.kill()
             process.communicate(timeout=PATIENCE)
             ended = process.returncode != -signal.SIGKILL

@@ -87,7 +87,8 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
     return text;
 }
 
-Previews::Previews(int width, int height, int pictures, std::size_t budget) : budget_(budget) {
+Previews::Previews(int width, int height, int pictures, std::size_t budget)
+    : budget_(budget), share_(budget / static_cast<std::size_t>(std::max(pictures, 1))) {
     const double pixels =
         static_cast<double>(budget) / (base64_growth * bytes_per_pixel * std::max(pictures, 1));
     const double shape = static_cast<double>(width) / height;
@@ -95,7 +96,13 @@ Previews::Previews(int width, int height, int pictures, std::size_t budget) : bu
 }
 
 void Previews::add(DrawStyle style, int frame, const Image& image) {
-    std::string text = base64(encode_webp(shrink(image, width_)));
+    const Image small = shrink(image, width_);
+    std::string text = base64(encode_webp(small));
+    // The size was chosen for pictures as they usually are; a busier one pays in quality, not in the budget.
+    for (const float quality : {50.f, 20.f, 5.f}) {
+        if (text.size() <= share_) break;
+        text = base64(encode_webp(small, quality));
+    }
     const std::lock_guard lock(mutex_);
     bytes_ += text.size();
     (style == DrawStyle::textured ? textured_ : components_).insert_or_assign(frame, std::move(text));

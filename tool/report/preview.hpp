@@ -39,7 +39,7 @@ public:
 
 private:
     int width_;
-    std::size_t budget_, bytes_ = 0;
+    std::size_t budget_, share_, bytes_ = 0;
     std::mutex mutex_;
     std::map<int, std::string> textured_, components_;
 };

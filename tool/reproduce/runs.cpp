@@ -73,9 +73,15 @@ SceneRun run_scene(const Scene& scene, int threads, bool compare_whole) {
 }
 
 int most_decomposed_frame(const SceneRun& run) {
+    const auto touches = [&](const FrameRecord& record) {
+        const auto held = std::count(record.component.begin(), record.component.end(), -1);
+        return 20 * static_cast<std::size_t>(held) >= record.component.size();
+    };
+    const bool any = std::any_of(run.records.begin() + 1, run.records.end(), touches);
     int best = 1;
     double most = 0;
     for (std::size_t k = 1; k < run.records.size(); ++k) {
+        if (any && !touches(run.records[k])) continue;
         const Components components = components_of(run.records[k]);
         double squares = 0;
         const double free = components.start.empty() ? 0 : components.start.back();
@@ -83,6 +89,25 @@ int most_decomposed_frame(const SceneRun& run) {
             squares += std::pow(components.size(c) / free, 2);
         if (squares > 0 && 1 / squares > most) {
             most = 1 / squares;
+            best = static_cast<int>(k);
+        }
+    }
+    return best;
+}
+
+int two_blocks_frame(const SceneRun& run) {
+    int best = 1;
+    std::uint32_t most = 0;
+    for (std::size_t k = 1; k < run.records.size(); ++k) {
+        const Components components = components_of(run.records[k]);
+        std::uint32_t first = 0, second = 0;
+        for (std::size_t c = 0; c < components.count(); ++c) {
+            const std::uint32_t size = components.size(c);
+            second = std::max(second, std::min(first, size));
+            first = std::max(first, size);
+        }
+        if (second > most) {
+            most = second;
             best = static_cast<int>(k);
         }
     }

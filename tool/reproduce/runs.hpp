@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/draw_scene.hpp"
 #include "sim/simulate.hpp"
 
 namespace unravel {
@@ -37,8 +38,13 @@ struct SceneRun {
 SceneRun run_scene(const Scene& scene, int threads, bool compare_whole);
 
 /// The frame in which the cloth is most evenly decomposed: greatest 1/Σ(share of free particles)², which
-/// hundreds of single particles hardly change.
+/// hundreds of single particles hardly change. Where constraints hold a twentieth of the cloth in some frame,
+/// only such frames count: before it meets anything a cloth falls apart in free flight, which no figure
+/// shows.
 int most_decomposed_frame(const SceneRun& run);
+
+/// The frame whose second largest component is the largest: two large blocks.
+int two_blocks_frame(const SceneRun& run);
 
 /// Frame records up to `frame` give the colours of its components.
 std::vector<Rgb> colors_at(const SceneRun& run, int frame);

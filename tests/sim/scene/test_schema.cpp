@@ -56,7 +56,8 @@ TEST_CASE("every scene that ships is valid by the schema", "[scene]") {
     const std::filesystem::path root = UNRAVEL_SOURCE_DIR;
     CHECK(valid_text(read(root / "tests/scenes/complete.toml")));
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "scenes")) {
-        if (entry.path().extension() != ".toml") continue;
+        // The table of hard cases names scenes, it is none.
+        if (entry.path().extension() != ".toml" || entry.path().filename() == "cases.toml") continue;
         INFO(entry.path().filename());
         CHECK(valid_text(read(entry.path())));
     }

@@ -1,0 +1,186 @@
+// Physics that can be checked in closed form: friction on a slope, air, refinement, self-collision.
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "sim/self_collision.hpp"
+#include "tests/sim/scenes.hpp"
+
+using namespace unravel;
+using namespace unravel::testing;
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+// A small sheet at rest on a slope of `angle` degrees; returns how far it slides down in `seconds`.
+double slide(double angle, Friction friction, double seconds) {
+    Scene scene;
+    Cloth cloth = sheet(11, 0);
+    cloth.size = {0.2, 0.2};
+    cloth.rotation = {0, 0, -angle};
+    Solid slope;
+    slope.shape = Shape::plane;
+    slope.rotation = {0, 0, -angle};
+    slope.friction = friction;
+    cloth.center = 0.004 * Vec3(std::sin(angle * degree), std::cos(angle * degree), 0);
+    scene.cloths.push_back(cloth);
+    scene.solids.push_back(slope);
+    Simulation simulation = start_simulation(scene);
+    const std::vector<Vec3> start = simulation.state.x;
+    const int steps = static_cast<int>(std::lround(seconds * 400));
+    for (int k = 0; k < steps; ++k)
+        step(simulation.model, simulation.options, 1.0 / 400, simulation.state, simulation.ws);
+    Vec3 moved = Vec3::Zero();
+    for (std::size_t p = 0; p < start.size(); ++p)
+        moved += (simulation.state.x[p] - start[p]) / static_cast<double>(start.size());
+    return moved.dot(Vec3(std::cos(angle * degree), -std::sin(angle * degree), 0));
+}
+
+// How far the middle of a sheet held at two edges sags.
+double sag(int n) {
+    Scene scene;
+    Cloth cloth = sheet(n, 1.0);
+    cloth.material.stretch = {300, 300};
+    cloth.material.shear = 30;
+    for (const char* edge : {"u0", "u1"}) {
+        Pin pin;
+        pin.target = PinTarget::edge;
+        pin.name = edge;
+        cloth.pins.push_back(pin);
+    }
+    scene.cloths.push_back(cloth);
+    scene.wind = Wind{};
+    scene.wind->drag = 200;  // brings it to rest soon
+    scene.solver.tolerance = 1e-5;
+    Simulation simulation = start_simulation(scene);
+    for (int k = 0; k < 400; ++k)
+        step(simulation.model, simulation.options, 0.01, simulation.state, simulation.ws);
+    return 1.0 - simulation.state.x[simulation.model.cloths[0].at(n / 2, n / 2)].y();
+}
+
+}  // namespace
+
+TEST_CASE("with friction 0.5 a sheet stays on a slope of 20 degrees") {
+    CHECK(std::abs(slide(20, {0.5, 0.4}, 1.0)) < 1e-3);
+}
+
+TEST_CASE("on a slope of 30 degrees it slides with the acceleration that theory gives") {
+    const double t = 0.5, mu = 0.4;
+    const double acceleration = 9.81 * (std::sin(30 * degree) - mu * std::cos(30 * degree));
+    // Friction needs the contact force of the step before: the first steps slide freely. 2% of the way.
+    CHECK(slide(30, {0.5, mu}, t) == Approx(0.5 * acceleration * t * t).epsilon(0.02));
+}
+
+TEST_CASE("a falling sheet reaches the terminal speed of its drag") {
+    Scene scene;
+    scene.cloths.push_back(sheet(9, 0));
+    scene.wind = Wind{};
+    Simulation simulation = start_simulation(scene);
+    for (int k = 0; k < 1600; ++k)
+        step(simulation.model, simulation.options, 0.005, simulation.state, simulation.ws);
+    // ½ ρ C v² = σ g per area
+    const double terminal = std::sqrt(2 * 0.2 * 9.81 / 1.2);
+    double speed = 0;
+    for (std::size_t p = 0; p < simulation.model.size(); ++p) {
+        speed -= simulation.model.mass[p] * simulation.state.v[p].y() / 0.2;
+    }
+    CHECK(speed == Approx(terminal).epsilon(0.01));
+}
+
+TEST_CASE("still air brings a cell to rest but never turns it round") {
+    Scene scene;
+    scene.gravity = {0, 0, 0};
+    scene.cloths.push_back(sheet(5, 0));
+    scene.cloths[0].velocity = {0, -1, 0};
+    scene.wind = Wind{};
+    scene.wind->density = 1e6;
+    Simulation simulation = start_simulation(scene);
+    for (int k = 0; k < 50; ++k) {
+        step(simulation.model, simulation.options, 0.005, simulation.state, simulation.ws);
+        for (const Vec3& v : simulation.state.v) CHECK(v.y() <= 1e-9);
+    }
+}
+
+TEST_CASE("refining a cloth refines the same cloth: equal sag within 2 percent") {
+    const double coarse = sag(25), fine = sag(51);
+    REQUIRE(coarse > 0.05);
+    CHECK(coarse == Approx(fine).epsilon(0.02));
+}
+
+TEST_CASE("masses add up to density times area, whatever the grid") {
+    for (const std::array<int, 2> particles : {std::array{1, 1}, {1, 9}, {7, 3}, {40, 40}}) {
+        Scene scene;
+        scene.cloths.push_back(sheet(5, 0));
+        scene.cloths[0].particles = particles;
+        scene.cloths[0].size = {0.7, 1.3};
+        Placement placement;
+        const ClothModel model = build_model(scene, placement);
+        double mass = 0;
+        for (const double m : model.mass) mass += m;
+        CHECK(mass == Approx(0.2 * 0.7 * 1.3).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("a tube starts unstretched and closes in u") {
+    Scene scene;
+    scene.cloths.push_back(sheet(5, 0));
+    scene.cloths[0].particles = {12, 5};
+    scene.cloths[0].wrap = Wrap::tube;
+    Placement placement;
+    const ClothModel model = build_model(scene, placement);
+    CHECK(model.springs.stretch_count == 12u * 5 + 12 * 4);
+    for (std::size_t s = 0; s < model.springs.stretch_count; ++s) {
+        const double length = (placement.x[model.springs.j[s]] - placement.x[model.springs.i[s]]).norm();
+        CHECK(length == Approx(model.springs.rest[s]).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("self-collision keeps two sheets apart, and without it they pass through each other") {
+    const auto least = [](bool collide) {
+        Scene scene;
+        scene.cloths.push_back(sheet(15, 0.1));
+        scene.cloths.push_back(sheet(15, 0.0));
+        scene.cloths[1].center.x() = 0.03;
+        Pin all;
+        all.target = PinTarget::box;
+        scene.cloths[1].pins.push_back(all);
+        if (collide) scene.self_collision = SelfCollision{};
+        Simulation simulation = start_simulation(scene);
+        double distance = 1;
+        for (int k = 0; k < 100; ++k) {
+            step(simulation.model, simulation.options, 1.0 / 400, simulation.state, simulation.ws);
+            for (std::uint32_t p = 0; p < 225; ++p) {
+                for (std::uint32_t q = 225; q < 450; ++q) {
+                    distance = std::min(distance, (simulation.state.x[p] - simulation.state.x[q]).norm());
+                }
+            }
+        }
+        return distance;
+    };
+    const double thickness = 0.75 / 14;
+    CHECK(least(true) > 0.5 * thickness);
+    CHECK(least(false) < 0.6 * thickness);
+}
+
+TEST_CASE("colliding pairs are those of a search over all pairs") {
+    Scene scene;
+    scene.cloths.push_back(sheet(13, 0));
+    scene.cloths[0].jitter = 0.3;
+    scene.self_collision = SelfCollision{};
+    scene.self_collision->thickness = 0.15;
+    Placement placement;
+    const ClothModel model = build_model(scene, placement);
+    SelfCollisionWorkspace ws;
+    self_collide(model, placement.x, placement.v, 0.005, 0.2, ws);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> naive, found;
+    for (std::uint32_t p = 0; p < model.size(); ++p) {
+        for (std::uint32_t q = p + 1; q < model.size(); ++q) {
+            const bool near = (placement.x[p] - placement.x[q]).norm() < 0.15;
+            if (near && !are_neighbours(model, p, q)) naive.emplace_back(p, q);
+        }
+    }
+    for (std::size_t s = 0; s < ws.springs.size(); ++s) found.emplace_back(ws.springs.i[s], ws.springs.j[s]);
+    CHECK(found == naive);
+}
