@@ -43,7 +43,8 @@ void visit_bounds(const DrawScene& scene, const DrawFrame& frame,
 PixelRect covered_rect(const DrawScene& scene, const DrawFrame& frame, const Eigen::Matrix4f& view_projection,
                        const PixelRect& whole, int margin) {
     constexpr float least_depth = 1e-3f;
-    Vec2f low = Vec2f::Constant(2), high = Vec2f::Constant(-2);  // in clip space, where the picture is [−1, 1]²
+    Vec2f low = Vec2f::Constant(2),
+          high = Vec2f::Constant(-2);  // in clip space, where the picture is [−1, 1]²
     bool behind = false;
     visit_bounds(scene, frame, [&](const Vec3f& p) {
         const Eigen::Vector4f clip = view_projection * p.homogeneous();
@@ -54,7 +55,8 @@ PixelRect covered_rect(const DrawScene& scene, const DrawFrame& frame, const Eig
     });
     if (behind) return whole;
     const auto pixel = [&](float at, int size) {
-        return static_cast<int>(std::floor(0.5f * (std::clamp(at, -2.f, 2.f) + 1) * static_cast<float>(size)));
+        return static_cast<int>(
+            std::floor(0.5f * (std::clamp(at, -2.f, 2.f) + 1) * static_cast<float>(size)));
     };
     const int left = std::max(pixel(low.x(), whole.width) - margin, 0);
     const int bottom = std::max(pixel(low.y(), whole.height) - margin, 0);

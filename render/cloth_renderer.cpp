@@ -55,7 +55,10 @@ Vec3f mix(const Vec3f& a, const Vec3f& b, float t) {
 
 /// Mean colour of a weave of two yarns.
 Vec3f mean_of(WeavePattern weave, const std::array<Vec3f, 2>& yarn) {
-    return mix(yarn[0], yarn[1], weave == WeavePattern::solid ? 0 : weave == WeavePattern::plain ? 0.11f : 0.5f);
+    return mix(yarn[0], yarn[1],
+               weave == WeavePattern::solid   ? 0
+               : weave == WeavePattern::plain ? 0.11f
+                                              : 0.5f);
 }
 
 /// Mean colour of a picture, in linear light.
@@ -71,10 +74,9 @@ Vec3f mean_of(const Image& image) {
 
 GlProgram fabric_program(const ClothMesh& mesh) {
     const ClothAppearance& look = mesh.appearance;
-    const std::string defines =
-        fmt::format("#define WEAVE {}\n#define PICTURE {}\n#define LIGHT_AT_VERTICES {}\n",
-                    static_cast<int>(look.weave), mesh.texture.pixels.empty() ? 0 : 1,
-                    mesh.triangles.size() > fine_mesh ? 1 : 0);
+    const std::string defines = fmt::format(
+        "#define WEAVE {}\n#define PICTURE {}\n#define LIGHT_AT_VERTICES {}\n", static_cast<int>(look.weave),
+        mesh.texture.pixels.empty() ? 0 : 1, mesh.triangles.size() > fine_mesh ? 1 : 0);
     GlProgram program({"frame.glsl", "light.glsl", "sky.glsl", "fabric.glsl", "cloth.vert"},
                       {"frame.glsl", "light.glsl", "pattern.glsl", "fabric.glsl", "weave.glsl", "cloth.frag"},
                       defines);
@@ -84,12 +86,13 @@ GlProgram fabric_program(const ClothMesh& mesh) {
     const std::array<Vec3f, 2> yarn_front{front, second}, yarn_back{back, mix(back, second, 0.3f)};
     glUniform1f(program.uniform("period"), look.period);
     // Coarser than real yarn, so that the weave is seen at the distance a whole cloth is shown from.
-    glUniform1f(program.uniform("thread"), look.period / 24);
+    // A twill lives by its diagonals, four threads wide.
+    glUniform1f(program.uniform("thread"), look.period / (look.weave == WeavePattern::twill ? 9.f : 24.f));
     glUniform3fv(program.uniform("yarn_front"), 2, yarn_front[0].data());
     glUniform3fv(program.uniform("yarn_back"), 2, yarn_back[0].data());
-    const std::array<Vec3f, 2> mean{mesh.texture.pixels.empty() ? mean_of(look.weave, yarn_front)
-                                                                : mean_of(mesh.texture),
-                                    mean_of(look.weave, yarn_back)};
+    const std::array<Vec3f, 2> mean{
+        mesh.texture.pixels.empty() ? mean_of(look.weave, yarn_front) : mean_of(mesh.texture),
+        mean_of(look.weave, yarn_back)};
     glUniform3fv(program.uniform("mean_albedo"), 2, mean[0].data());
     return program;
 }

@@ -43,8 +43,8 @@ private:
     void draw_triangles(const Cloth& cloth) const;
 
     std::vector<Cloth> cloths_;
-    std::vector<Vec3f> normals_;   ///< (particles)
-    std::vector<Vertex> scratch_;  ///< of one cloth at a time
+    std::vector<Vec3f> normals_;                               ///< (particles)
+    std::vector<Vertex> scratch_;                              ///< of one cloth at a time
     std::vector<std::array<std::uint8_t, 4>> shaded_;          ///< (particles) sRGB
     std::vector<std::array<std::uint8_t, 4>> scratch_colors_;  ///< of one cloth at a time
 };

@@ -148,9 +148,9 @@ bool Renderer::Parts::below_ground(const DrawFrame& frame) const {
 PixelRect Renderer::Parts::begin_shapes(DrawStyle style, const DrawFrame& frame) const {
     // Wires and dots are drawn around their particles.
     const int margin = static_cast<int>(2 * WireRenderer::line_width(height())) + 2;
-    const PixelRect rect = solids.any_plane() ? framebuffer.whole()
-                                              : covered_rect(*scene, frame, block.view_projection,
-                                                             framebuffer.whole(), margin);
+    const PixelRect rect =
+        solids.any_plane() ? framebuffer.whole()
+                           : covered_rect(*scene, frame, block.view_projection, framebuffer.whole(), margin);
     if (rect.empty()) return rect;
     target(style).begin_layer(rect);
     if (!below_ground(frame)) return rect;

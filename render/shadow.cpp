@@ -75,7 +75,7 @@ void ShadowMaps::draw(const DrawCasters& draw_casters) const {
     glDepthFunc(GL_LESS);
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);  // a cloth has no inside
+    glDisable(GL_CULL_FACE);   // a cloth has no inside
     glEnable(GL_DEPTH_CLAMP);  // what has moved out of the scene's bounds casts all the same
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1.5f, 2);

@@ -55,7 +55,7 @@ public:
           folder_(folder),
           options_(options),
           edges_(drawn_edges(model)),
-          drawn_(make_draw_scene(scene, model, placement)) {
+          drawn_(make_draw_scene(scene, model, placement, options.textures)) {
         thread_.run([&] {
             context_ = std::make_unique<GlContext>(options.device);
             renderer_ = std::make_unique<Renderer>(*context_, drawn_, render_settings(scene, options));
@@ -95,7 +95,7 @@ public:
             Passage* passage = nullptr;
             free_.pop(passage);
             passage->record = std::move(*record);
-            make_draw_frame(scene_, model_, passage->record, colors, passage->drawing);
+            make_draw_frame(scene_, model_, passage->record, colors, passage->drawing, options_.camera);
             passage->pictures.resize(options_.styles.size());
             return passage;
         }

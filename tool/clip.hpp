@@ -18,6 +18,8 @@ namespace unravel {
 struct ClipOptions {
     std::vector<DrawStyle> styles{DrawStyle::textured, DrawStyle::components};
     DeviceChoice device;
+    std::size_t camera = 0;          ///< of the scene's
+    std::filesystem::path textures;  ///< folder that the scene's pictures are named relative to
     int samples = 4;
     int supersample = 1;
     int first = 0;  ///< frames drawn: first … last

@@ -43,6 +43,7 @@ int command_render(const Options& options) {
     Scene scene = load_scene(cached.scene(), options.overrides);
     const std::uint64_t hash = scene_hash(scene);
     ClipOptions clip_options = clip_options_of(options, scene);
+    clip_options.textures = cached.root;
     const RunFolder folder{options.output.empty() ? cached.root : options.output};
     check_clip(scene, folder, clip_options);
     const FolderLock lock(folder.root);

@@ -60,6 +60,8 @@ int simulate_clip(const Options& options, bool pictures) {
     const RunFolder folder{options.output.empty() ? std::filesystem::path("output") / scene.name
                                                   : options.output};
     ClipOptions clip_options = clip_options_of(options, scene);
+    // Relative to nothing would mean that there are none.
+    clip_options.textures = options.scene.has_parent_path() ? options.scene.parent_path() : ".";
     Simulation simulation = start_simulation(scene);
     simulation.options.compare_whole = options.compare_whole;
     if (!options.allow_unstable)
@@ -70,7 +72,7 @@ int simulate_clip(const Options& options, bool pictures) {
                               : options.resume ? Existing::resume
                                                : Existing::refuse;
     const FolderLock lock(folder.root);
-    const std::uint64_t hash = open_run(folder, scene, existing);
+    const std::uint64_t hash = open_run(folder, scene, existing, clip_options.textures);
 
     const int threads = thread_count(options);
     const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,

@@ -38,6 +38,7 @@ void add_picture_options(CLI::App& command, Options& o) {
     command.add_option("--frames", o.frames, "A-B: only these frames");
     command.add_option("--style", o.style, "textured, components or both")->capture_default_str();
     command.add_option("--size", o.size, "WxH, both even (default: the scene's)");
+    command.add_option("--camera", o.camera, "one of the scene's cameras by name (default: the first)");
     command.add_option("--device", o.device, "auto, gpu, software or the number of an EGL device")
         ->capture_default_str();
     command.add_option("--samples", o.samples, "per pixel, clamped to what the renderer offers")

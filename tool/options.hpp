@@ -30,16 +30,17 @@ struct Options {
     std::string device = "auto";
     std::string style = "both";  ///< textured, components, both
     std::string size;            ///< --size WxH
+    std::string camera;          ///< name of one of the scene's; empty: its first
     std::string video = "mp4";   ///< mp4, webm, mkv, gif, none
     std::string codec, preset;
     int crf = -1;
     int samples = 4, supersample = 1;
     bool pictures = true;
-    double budget = 10;   ///< --budget, minutes
-    double error = 1e-3;  ///< --error, of the cloth's diagonal
-    bool allow_unstable = false;     ///< run although explicit springs are beyond their limit
-    std::vector<std::string> cases;  ///< stability: these only
-    bool map = false;                ///< stability: the (stiffness, step) map
+    double budget = 10;                       ///< --budget, minutes
+    double error = 1e-3;                      ///< --error, of the cloth's diagonal
+    bool allow_unstable = false;              ///< run although explicit springs are beyond their limit
+    std::vector<std::string> cases;           ///< stability: these only
+    bool map = false;                         ///< stability: the (stiffness, step) map
     int frame = 0, step = 0;                  ///< inspect: --frame, and --step within it (0: its last)
     std::int64_t particle = -1, spring = -1;  ///< inspect; −1: none asked for
     bool quick = false;                       ///< reproduce

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <string_view>
 
@@ -33,6 +34,15 @@ ClipOptions clip_options_of(const Options& options, Scene& scene) {
     }
     if (!options.size.empty() && !parse_pair(options.size, 'x', scene.clip.size[0], scene.clip.size[1])) {
         throw UsageError(fmt::format("--size {}: write it as 1920x1080", options.size));
+    }
+    if (!options.camera.empty()) {
+        const auto found = std::ranges::find(scene.cameras, options.camera, &Camera::name);
+        if (found == scene.cameras.end()) {
+            std::string names;
+            for (const Camera& camera : scene.cameras) names += (names.empty() ? "" : ", ") + camera.name;
+            throw UsageError(fmt::format("--camera {}: the scene has {}", options.camera, names));
+        }
+        clip.camera = static_cast<std::size_t>(found - scene.cameras.begin());
     }
     clip.last = scene.clip.frames() - 1;
     if (!options.frames.empty()) {

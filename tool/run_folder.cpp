@@ -5,6 +5,7 @@
 #include <sstream>
 #include <vector>
 
+#include "base/file_errors.hpp"
 #include "base/whole_file.hpp"
 #include "sim/scene/load.hpp"
 
@@ -65,7 +66,27 @@ std::uint64_t scene_hash(const Scene& scene) {
     return hash_bytes(text.data(), text.size());
 }
 
-std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing existing) {
+namespace {
+
+// The run's own copies of the scene's pictures, under the same names: the folder can be moved and drawn
+// again.
+void copy_textures(const RunFolder& folder, const Scene& scene, const fs::path& textures) {
+    for (const ClothLook& look : scene.look.cloth) {
+        const fs::path name = fs::path(look.texture).lexically_normal();
+        if (name.empty() || *name.begin() == "..") continue;
+        const fs::path from = textures / name, to = folder.root / name;
+        std::error_code error;
+        if (fs::equivalent(from, to, error)) continue;
+        create_folder(to.parent_path());
+        if (!fs::copy_file(from, to, fs::copy_options::overwrite_existing, error))
+            throw OutputError(to, fmt::format("copying {} failed: {}", from.string(), error.message()));
+    }
+}
+
+}  // namespace
+
+std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing existing,
+                       const fs::path& textures) {
     const bool there = fs::exists(folder.scene()) || fs::exists(folder.cache());
     if (there && existing == Existing::refuse) {
         throw FolderError(
@@ -102,6 +123,7 @@ std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing exi
     // What stopped an earlier run is no news of this one.
     std::error_code error;
     fs::remove_all(folder.failure(), error);
+    if (!textures.empty()) copy_textures(folder, scene, textures);
     write_whole_file(folder.scene(), scene_to_toml(scene));
     return scene_hash(scene);
 }

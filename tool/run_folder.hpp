@@ -42,9 +42,10 @@ enum class Existing { refuse, resume, replace };
 
 /// Makes the folder ready for a run of this scene: creates it, removes what a killed run left half-written,
 /// and where a run is there already refuses, goes on from it, or removes it. Going on with a changed scene is
-/// refused with what changed. Returns the scene's hash, which ties cache files to it. Throws FolderError,
-/// OutputError.
-std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing existing);
+/// refused with what changed. Pictures that the scene names relative to `textures` are copied along. Returns
+/// the scene's hash, which ties cache files to it. Throws FolderError, OutputError.
+std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing existing,
+                       const std::filesystem::path& textures = {});
 
 /// Frames 0 … k−1 that the cache holds whole and undamaged; the first that is missing ends the list.
 int cached_frames(const RunFolder& folder, const Scene& scene, std::uint64_t scene_hash,

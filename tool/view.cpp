@@ -5,6 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "render/png.hpp"
 #include "sim/solids/motion.hpp"
 
 namespace unravel {
@@ -135,7 +136,8 @@ Rgb parse_color(const std::string& text) {
     return {byte(1), byte(3), byte(5)};
 }
 
-DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Placement& placement) {
+DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Placement& placement,
+                          const std::filesystem::path& textures) {
     DrawScene out;
     for (std::size_t c = 0; c < model.cloths.size(); ++c) {
         ClothAppearance appearance;
@@ -149,6 +151,8 @@ DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Pla
             appearance.texture = look.texture;
         }
         out.cloths.push_back(mesh_of(model.cloths[c], appearance));
+        if (!appearance.texture.empty() && !textures.empty())
+            out.cloths.back().texture = read_png(textures / appearance.texture);
     }
     // Stretch springs are stored cloth by cloth, so each cloth's edges are a run of them.
     const auto edges = drawn_edges(model);
@@ -183,7 +187,7 @@ std::vector<std::array<std::uint32_t, 2>> drawn_edges(const ClothModel& model) {
 }
 
 void make_draw_frame(const Scene& scene, const ClothModel& model, const FrameRecord& record,
-                     const std::vector<Rgb>& particle_colors, DrawFrame& out) {
+                     const std::vector<Rgb>& particle_colors, DrawFrame& out, std::size_t camera) {
     constexpr std::uint8_t faint = 110;
     out.positions.resize(model.size());
     for (std::size_t p = 0; p < model.size(); ++p) out.positions[p] = record.state.x[p].cast<float>();
@@ -196,7 +200,7 @@ void make_draw_frame(const Scene& scene, const ClothModel& model, const FrameRec
     for (const Solid& solid : scene.solids) {
         if (!is_ground(solid)) out.solid_poses.push_back(solid_pose(solid, record.state.t).cast<float>());
     }
-    out.camera = camera_at(scene, scene.cameras.front(), record.state.t);
+    out.camera = camera_at(scene, scene.cameras[camera], record.state.t);
 }
 
 CameraView camera_at(const Scene& scene, const Camera& camera, double t) {
