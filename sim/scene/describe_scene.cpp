@@ -5,9 +5,9 @@ namespace unravel {
 namespace {
 
 // In the order of the enums in scene.hpp.
-constexpr std::string_view integrators[] = {"explicit",      "implicit", "newton",         "imex",
+constexpr std::string_view integrators[] = {"explicit",      "implicit", "newton",        "imex",
                                             "adaptive-imex", "bdf2",     "adaptive-imex2"};
-constexpr std::string_view preconditioners[] = {"none", "diagonal", "block",     "constrained-block",
+constexpr std::string_view preconditioners[] = {"none", "diagonal", "block", "constrained-block",
                                                 "ssor", "ic0"};
 
 constexpr std::string_view activations[] = {"start", "predicted", "resolve"};

@@ -29,8 +29,12 @@ Vec3 unrotated(const Cloth& cloth, int i, int j) {
     if (cloth.wrap == Wrap::tube) {
         // v runs along +z and the front faces out, so u turns from +y (its top) towards +x.
         const double angle = 2 * std::numbers::pi * uv.x();
-        local.x() = width / (2 * std::numbers::pi) * std::sin(angle);
-        local.y() = width / (2 * std::numbers::pi) * std::cos(angle);
+        // The ring whose chords, not arcs, add up to the circumference: its springs start at their rest
+        // lengths.
+        const int nu = cloth.particles[0];
+        const double radius = width / nu / (2 * std::sin(std::numbers::pi / nu));
+        local.x() = radius * std::sin(angle);
+        local.y() = radius * std::cos(angle);
     } else {
         local.x() = (uv.x() - 0.5) * width;
     }

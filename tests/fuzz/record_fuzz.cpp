@@ -1,6 +1,6 @@
-// libFuzzer target of the frame records' reader. Any bytes have to end in a record that fits the cloth or in an
-// InputError, and take no more memory than a few times the file. Head and checksum are put round the input:
-// what they protect from is chance, not malice.
+// libFuzzer target of the frame records' reader. Any bytes have to end in a record that fits the cloth or in
+// an InputError, and take no more memory than a few times the file. Head and checksum are put round the
+// input: what they protect from is chance, not malice.
 //
 //   CXX=clang++ cmake -S . -B build/fuzz -G Ninja -DUNRAVEL_BUILD_FUZZ=ON
 //   cmake --build build/fuzz --target record_fuzz

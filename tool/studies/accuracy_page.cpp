@@ -86,7 +86,8 @@ Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyRefer
         }
     }
     if (axis == CostAxis::time) {
-        PlotSeries front{"Pareto front", {}, SeriesStyle::line, true, static_cast<int>(Integrator::adaptive_imex2) + 1};
+        PlotSeries front{
+            "Pareto front", {}, SeriesStyle::line, true, static_cast<int>(Integrator::adaptive_imex2) + 1};
         for (const AccuracyPoint* p : pareto_front(points)) {
             front.points.push_back(plotted(*p, seconds_simulated, axis));
             front.points.back().left = front.points.back().right = nothing;

@@ -8,8 +8,7 @@ namespace unravel {
 
 namespace {
 
-constexpr const char* names[] = {"none", "diagonal", "block",     "constrained block",
-                                 "ssor", "ic0"};
+constexpr const char* names[] = {"none", "diagonal", "block", "constrained block", "ssor", "ic0"};
 
 // Iterations of a component that all rows share equally in.
 double iterations_of(const Components& components, const std::vector<ComponentSolve>& solves) {
