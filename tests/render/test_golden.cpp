@@ -6,6 +6,7 @@
 
 #include "render/png.hpp"
 #include "render/renderer.hpp"
+#include "source_dir.hpp"
 #include "tests/render/gl_test.hpp"
 #include "tests/render/sheet.hpp"
 

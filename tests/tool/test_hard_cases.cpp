@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "source_dir.hpp"
 #include "tool/hard_case.hpp"
 
 using namespace unravel;

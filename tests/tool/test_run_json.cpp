@@ -6,6 +6,7 @@
 
 #include "sim/scene/load.hpp"
 #include "sim/stats.hpp"
+#include "source_dir.hpp"
 #include "tests/base/temporary_folder.hpp"
 #include "tests/json_schema.hpp"
 #include "tool/inspect/inspected.hpp"

@@ -1,4 +1,5 @@
 #include "tool/reproduce/runs.hpp"
+#include "source_dir.hpp"
 
 #include <tbb/task_arena.h>
 

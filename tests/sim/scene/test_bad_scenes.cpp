@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "sim/scene/load.hpp"
+#include "source_dir.hpp"
 
 using namespace unravel;
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/scene/document.hpp"
+#include "source_dir.hpp"
 #include "tests/json_schema.hpp"
 
 using namespace unravel;

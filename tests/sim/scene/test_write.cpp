@@ -6,6 +6,7 @@
 #include "sim/scene/document.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/scene/schema.hpp"
+#include "source_dir.hpp"
 
 using namespace unravel;
 

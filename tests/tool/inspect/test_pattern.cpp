@@ -1,3 +1,4 @@
+#include "source_dir.hpp"
 #include "tool/inspect/pattern.hpp"
 
 #include <catch2/catch.hpp>
