@@ -28,10 +28,9 @@ void upload_texture(GLuint texture, const Image& image) {
         glTexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAX_ANISOTROPY_EXT, 8);
 }
 
-/// Triangles between a few of the mesh's vertices: each cell of a grid over the flat cloth is stood for by
-/// its first vertex.
-std::vector<std::uint32_t> coarsen(const ClothMesh& mesh) {
-    constexpr float cells = 40;  // along the longer side
+/// Triangles between a few of the mesh's vertices: each cell of a grid over the flat cloth, `cells` along its
+/// longer side, is stood for by its first vertex.
+std::vector<std::uint32_t> coarsen(const ClothMesh& mesh, float cells) {
     Vec2f extent(1e-6f, 1e-6f);
     for (const Vec2f& uv : mesh.uv) extent = extent.cwiseMax(uv);
     const float cell = extent.maxCoeff() / cells;
@@ -72,11 +71,11 @@ Vec3f mean_of(const Image& image) {
     return sum / static_cast<float>(std::max(image.width * image.height, 1));
 }
 
-GlProgram fabric_program(const ClothMesh& mesh) {
+GlProgram fabric_program(const ClothMesh& mesh, bool software) {
     const ClothAppearance& look = mesh.appearance;
     const std::string defines = fmt::format(
         "#define WEAVE {}\n#define PICTURE {}\n#define LIGHT_AT_VERTICES {}\n", static_cast<int>(look.weave),
-        mesh.texture.pixels.empty() ? 0 : 1, mesh.triangles.size() > fine_mesh ? 1 : 0);
+        mesh.texture.pixels.empty() ? 0 : 1, software && mesh.triangles.size() > fine_mesh ? 1 : 0);
     GlProgram program({"frame.glsl", "light.glsl", "sky.glsl", "fabric.glsl", "cloth.vert"},
                       {"frame.glsl", "light.glsl", "pattern.glsl", "fabric.glsl", "weave.glsl", "cloth.frag"},
                       defines);
@@ -87,7 +86,9 @@ GlProgram fabric_program(const ClothMesh& mesh) {
     glUniform1f(program.uniform("period"), look.period);
     // Coarser than real yarn, so that the weave is seen at the distance a whole cloth is shown from.
     // A twill lives by its diagonals, four threads wide.
-    glUniform1f(program.uniform("thread"), look.period / (look.weave == WeavePattern::twill ? 9.f : 24.f));
+    glUniform1f(program.uniform("thread"), look.weave == WeavePattern::twill
+                                               ? std::min(look.period / 9, 0.006f)
+                                               : std::min(look.period / 24, 0.0025f));
     glUniform3fv(program.uniform("yarn_front"), 2, yarn_front[0].data());
     glUniform3fv(program.uniform("yarn_back"), 2, yarn_back[0].data());
     const std::array<Vec3f, 2> mean{
@@ -99,12 +100,13 @@ GlProgram fabric_program(const ClothMesh& mesh) {
 
 }  // namespace
 
-ClothRenderer::Cloth::Cloth(const ClothMesh& of) : mesh(&of), fabric(fabric_program(of)) {}
+ClothRenderer::Cloth::Cloth(const ClothMesh& of, bool software)
+    : mesh(&of), fabric(fabric_program(of, software)) {}
 
-ClothRenderer::ClothRenderer(const DrawScene& scene) {
+ClothRenderer::ClothRenderer(const DrawScene& scene, bool software) {
     std::size_t most = 0, particles = 0;
     for (const ClothMesh& mesh : scene.cloths) {
-        Cloth& cloth = cloths_.emplace_back(mesh);
+        Cloth& cloth = cloths_.emplace_back(mesh, software);
         const std::size_t count = mesh.particle.size();
         most = std::max(most, count);
         for (const std::uint32_t p : mesh.particle) particles = std::max<std::size_t>(particles, p + 1);
@@ -119,12 +121,9 @@ ClothRenderer::ClothRenderer(const DrawScene& scene) {
         glEnableVertexAttribArray(3);
         glVertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, 4, nullptr);
         fill_buffer(GL_ELEMENT_ARRAY_BUFFER, cloth.indices, mesh.triangles);
-        const std::vector<std::uint32_t> coarse = coarsen(mesh);
-        cloth.coarse_count = static_cast<GLsizei>(coarse.size());
-        glBindVertexArray(cloth.coarse_array);
-        glBindBuffer(GL_ARRAY_BUFFER, cloth.vertices);
-        float_attribute(0, 3, sizeof(Vertex), 0);
-        fill_buffer(GL_ELEMENT_ARRAY_BUFFER, cloth.coarse_indices, coarse);
+        // A GPU draws all triangles faster than it is told to draw fewer.
+        make_outline(cloth, software ? 64 : 1e6f, cloth.casters);
+        make_outline(cloth, 28, cloth.coarse);
         glBindVertexArray(0);
 
         if (!mesh.texture.pixels.empty()) {
@@ -152,7 +151,7 @@ void ClothRenderer::update_shape(const DrawFrame& frame) {
     }
 }
 
-std::span<const std::array<std::uint8_t, 4>> ClothRenderer::update_colors(const DrawFrame& frame) {
+void ClothRenderer::update_colors(const DrawFrame& frame) {
     // A lamp above the viewer's left shoulder, which lights all sides of folds differently.
     const Vec3f back = (frame.camera.position - frame.camera.target).normalized();
     const Vec3f left = back.cross(frame.camera.up).normalized();
@@ -172,7 +171,6 @@ std::span<const std::array<std::uint8_t, 4>> ClothRenderer::update_colors(const 
         for (std::size_t i = 0; i < particle.size(); ++i) scratch_colors_[i] = shaded_[particle[i]];
         update_buffer(GL_ARRAY_BUFFER, cloth.colors, std::span(scratch_colors_).first(particle.size()));
     }
-    return shaded_;
 }
 
 void ClothRenderer::draw_triangles(const Cloth& cloth) const {
@@ -186,10 +184,25 @@ void ClothRenderer::draw_shapes() const {
 }
 
 void ClothRenderer::draw_coarse() const {
-    for (const Cloth& cloth : cloths_) {
-        glBindVertexArray(cloth.coarse_array);
-        glDrawElements(GL_TRIANGLES, cloth.coarse_count, GL_UNSIGNED_INT, nullptr);
-    }
+    for (const Cloth& cloth : cloths_) draw_outline(cloth.coarse);
+}
+
+void ClothRenderer::draw_casters() const {
+    for (const Cloth& cloth : cloths_) draw_outline(cloth.casters);
+}
+
+void ClothRenderer::make_outline(const Cloth& cloth, float cells, Outline& outline) {
+    const std::vector<std::uint32_t> triangles = coarsen(*cloth.mesh, cells);
+    outline.count = static_cast<GLsizei>(triangles.size());
+    glBindVertexArray(outline.array);
+    glBindBuffer(GL_ARRAY_BUFFER, cloth.vertices);
+    float_attribute(0, 3, sizeof(Vertex), 0);
+    fill_buffer(GL_ELEMENT_ARRAY_BUFFER, outline.indices, triangles);
+}
+
+void ClothRenderer::draw_outline(const Outline& outline) {
+    glBindVertexArray(outline.array);
+    glDrawElements(GL_TRIANGLES, outline.count, GL_UNSIGNED_INT, nullptr);
 }
 
 void ClothRenderer::draw_fabric() const {

@@ -11,36 +11,46 @@ namespace unravel {
 /// The cloths as surfaces: into shadow maps, as fabric, and as the ground that wires are drawn on.
 class ClothRenderer {
 public:
-    explicit ClothRenderer(const DrawScene& scene);
+    /// `software`: the renderer pays for each pixel; fine meshes then get their light at vertices.
+    ClothRenderer(const DrawScene& scene, bool software);
 
     /// New positions and smooth normals.
     void update_shape(const DrawFrame& frame);
-    /// New colours of the component view: the particles' own, lightly shaded by the surface's tilt, so that
-    /// folds are seen. The result holds until the next call.
-    std::span<const std::array<std::uint8_t, 4>> update_colors(const DrawFrame& frame);
+    /// New colours of the component view's surface: the particles' own, shaded by its tilt, so that folds are
+    /// seen between wires, which keep their colours as they are.
+    void update_colors(const DrawFrame& frame);
 
     /// Triangles only: position at attribute 0, colour at 3.
     void draw_shapes() const;
     /// The same in at most a few thousand triangles, for the small maps of sky light. Position only.
     void draw_coarse() const;
+    /// The same in enough triangles for the key light's map.
+    void draw_casters() const;
     void draw_fabric() const;
 
 private:
     struct Vertex {
         Vec3f position, normal;
     };
+    // Fewer triangles between the same vertices.
+    struct Outline {
+        GlVertexArray array;
+        GlBuffer indices;
+        GLsizei count = 0;
+    };
     struct Cloth {
         const ClothMesh* mesh;
         GlProgram fabric;  ///< built for this cloth's weave
         GlVertexArray vertex_array;
-        GlBuffer vertices, uvs, colors, indices, coarse_indices;
-        GlVertexArray coarse_array;
-        GLsizei coarse_count = 0;
+        GlBuffer vertices, uvs, colors, indices;
+        Outline casters, coarse;
         GlTexture texture;
 
-        explicit Cloth(const ClothMesh& of);
+        Cloth(const ClothMesh& of, bool software);
     };
     void draw_triangles(const Cloth& cloth) const;
+    static void make_outline(const Cloth& cloth, float cells, Outline& outline);
+    static void draw_outline(const Outline& outline);
 
     std::vector<Cloth> cloths_;
     std::vector<Vec3f> normals_;                               ///< (particles)

@@ -38,8 +38,7 @@ struct ClothMesh {
     std::vector<std::uint32_t> particle;  ///< (vertices) index into DrawFrame::positions
     std::vector<Vec2f> uv;                ///< (vertices) metres along the flat cloth
     std::vector<std::array<std::uint32_t, 3>>
-        triangles;                                    ///< vertex indices, counter-clockwise from the front
-    std::vector<std::array<std::uint32_t, 2>> edges;  ///< particle indices, the springs drawn as wires
+        triangles;  ///< vertex indices, counter-clockwise from the front
     ClothAppearance appearance;
     Image texture;  ///< appearance.texture decoded; spans the cloth once, on its front; empty: the weave
 };
@@ -62,8 +61,12 @@ struct CameraView {
 /// Fixed for a whole clip.
 struct DrawScene {
     std::vector<ClothMesh> cloths;
+    std::vector<std::array<std::uint32_t, 2>> edges;  ///< particle pairs, the springs drawn as wires
+    float spacing = 0.02f;                            ///< m, typical length of those springs at rest
     std::vector<SolidMesh> solids;
     Rgb background{216, 222, 230};
+    bool transparent =
+        false;  ///< neither background nor ground: alpha is what shapes cover, colours are straight
     bool show_ground = true;
     float ground_height = 0;  ///< m
     Rgb ground{141, 144, 150};
@@ -77,12 +80,13 @@ struct DrawScene {
 struct DrawFrame {
     std::vector<Vec3f> positions;      ///< (particles) [m]
     std::vector<Rgb> particle_colors;  ///< (particles) component view: by component, white if constrained
-    std::vector<std::uint8_t>
-        edge_strength;  ///< (edges of all cloths, in order) 255 solid … 0 not drawn; empty: all solid
+    std::vector<std::uint8_t> edge_strength;  ///< (edges) 255 solid … 0 not drawn; empty: all solid
+    std::vector<Rgb> edge_colors;  ///< (edges) colours of the wires; empty: those of the particles they join
     std::vector<Eigen::Isometry3f> solid_poses;  ///< (solids) shape's own frame to world
     CameraView camera;
 };
 
-enum class DrawStyle { textured, components };
+/// Cloth as it looks; wires in the colours of the frame; those wires on top of that cloth.
+enum class DrawStyle { textured, components, overlay };
 
 }  // namespace unravel

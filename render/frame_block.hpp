@@ -18,7 +18,8 @@ struct FrameBlock {
     Eigen::Vector4f key_color, fill_direction, fill_color, sky_color, bounce_color;
     Eigen::Vector4f background;
     Eigen::Vector4f ground;  ///< x, z of its middle [m]; distances where its fade begins and ends [m]
-    Eigen::Vector4f shadow;  ///< texel of the key map [m]; extent of the map [m]; texel of a sky map [m]; –
+    Eigen::Vector4f shadow;  ///< texel of the key map [m]; extent of the map [m]; texel of a sky map [m]; by
+                             ///< how much solids yield to cloth [m]
     Eigen::Vector4f
         viewport;  ///< width, height [px]; pixels per metre at a depth of 1 m; wire bias towards the eye [m]
 };

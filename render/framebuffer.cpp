@@ -25,29 +25,35 @@ int clamped_samples(const GlContext& context, int asked) {
 
 }  // namespace
 
-Framebuffer::Framebuffer(const GlContext& context, int width, int height, int samples, int supersample)
-    : width_(width),
-      height_(height),
-      samples_(clamped_samples(context, samples)),
-      supersample_(std::max(1, supersample)),
-      lay_({"screen.vert"}, {"layer.frag"}, fmt::format("#define SAMPLES {}\n", samples_)),
-      average_({"screen.vert"}, {"average.frag"}) {
+Framebuffer::Framebuffer(const GlContext& context, const Options& options)
+    : width_(options.width),
+      height_(options.height),
+      samples_(clamped_samples(context, options.samples)),
+      supersample_(std::max(1, options.supersample)),
+      transparent_(options.transparent),
+      lay_({"screen.vert"}, {"layer.frag"},
+           fmt::format("#define SAMPLES {}\n#define ROOTS {}\n", samples_, options.roots ? 1 : 0)),
+      average_({"screen.vert"}, {"average.frag"}),
+      factor_(average_.uniform("factor")),
+      share_(average_.uniform("share")),
+      straight_(average_.uniform("straight")) {
     const int w = width_ * supersample_, h = height_ * supersample_;
     GLint limit = 0;
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &limit);
-    if (width < 1 || height < 1 || w > limit || h > limit)
+    if (width_ < 1 || height_ < 1 || w > limit || h > limit)
         throw RendererError(
             fmt::format("a {}×{} frame with supersampling {} is beyond the renderer's limit of {} pixels "
                         "a side: ask for a smaller size or less supersampling",
-                        width, height, supersample_, limit));
+                        width_, height_, supersample_, limit));
 
     // With one sample the multisample calls would still give a multisampled (slower) target on some drivers.
+    const GLenum format = options.roots ? GL_RGBA8 : GL_SRGB8_ALPHA8;
     const GLenum kind = samples_ > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
     glBindTexture(kind, layer_color_);
     if (samples_ > 1)
-        glTexImage2DMultisample(kind, samples_, GL_SRGB8_ALPHA8, w, h, GL_TRUE);
+        glTexImage2DMultisample(kind, samples_, format, w, h, GL_TRUE);
     else
-        glTexImage2D(kind, 0, GL_SRGB8_ALPHA8, w, h, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+        glTexImage2D(kind, 0, static_cast<GLint>(format), w, h, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     if (samples_ == 1) glTexParameteri(kind, GL_TEXTURE_MAX_LEVEL, 0);
     glBindRenderbuffer(GL_RENDERBUFFER, layer_depth_);
     glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_ > 1 ? samples_ : 0, GL_DEPTH_COMPONENT24, w,
@@ -72,9 +78,20 @@ Framebuffer::Framebuffer(const GlContext& context, int width, int height, int sa
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, finished_color_);
     check_complete("output");
 
+    if (options.exposures) {
+        // A sum of many small shares needs more than eight bits.
+        glBindTexture(GL_TEXTURE_2D, exposed_color_);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA16F, width_, height_, 0, GL_RGBA, GL_FLOAT, nullptr);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        glBindFramebuffer(GL_FRAMEBUFFER, exposed_);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, exposed_color_, 0);
+        check_complete("exposure");
+    }
+
     lay_.sampler("layer", 0);
     average_.sampler("picture", 0);
-    glUniform1i(average_.uniform("factor"), supersample_);
 }
 
 void Framebuffer::begin_backdrop() const {
@@ -98,34 +115,52 @@ void Framebuffer::begin_layer(const PixelRect& rect) const {
     if (samples_ > 1) glEnable(GL_MULTISAMPLE);
 }
 
-void Framebuffer::finish(const PixelRect& rect) const {
+void Framebuffer::lay_over(const PixelRect& rect) const {
+    if (rect.empty()) return;
+    glBindTexture(samples_ > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D, layer_color_);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(rect.x, rect.y, rect.width, rect.height);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    lay_.use();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisable(GL_BLEND);
+    glDisable(GL_SCISSOR_TEST);
+}
+
+void Framebuffer::average(GLuint target, GLuint picture, int factor, float share, bool straight) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, target);
+    glViewport(0, 0, width_, height_);
+    glBindTexture(GL_TEXTURE_2D, picture);
+    average_.use();
+    glUniform1i(factor_, factor);
+    glUniform1f(share_, share);
+    glUniform1i(straight_, straight ? 1 : 0);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Framebuffer::finish(const PixelRect& rect, int k, int n) const {
     glDisable(GL_MULTISAMPLE);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glBindVertexArray(no_vertices_);
     glActiveTexture(GL_TEXTURE0);
     glBindFramebuffer(GL_FRAMEBUFFER, backdrop_);
-    if (!rect.empty()) {
-        glBindTexture(samples_ > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D, layer_color_);
-        glEnable(GL_SCISSOR_TEST);
-        glScissor(rect.x, rect.y, rect.width, rect.height);
+    lay_over(rect);
+    if (n > 1) {
         glEnable(GL_BLEND);
-        glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-        lay_.use();
-        glDrawArrays(GL_TRIANGLES, 0, 3);
+        glBlendFunc(GL_ONE, k == 0 ? GL_ZERO : GL_ONE);
+        average(exposed_, backdrop_color_, supersample_, 1.f / static_cast<float>(n), false);
         glDisable(GL_BLEND);
-    }
-    glDisable(GL_SCISSOR_TEST);
-    if (supersample_ > 1) {
-        glBindFramebuffer(GL_FRAMEBUFFER, finished_);
-        glViewport(0, 0, width_, height_);
-        glBindTexture(GL_TEXTURE_2D, backdrop_color_);
-        average_.use();
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-        glBindFramebuffer(GL_READ_FRAMEBUFFER, finished_);
+        if (k + 1 < n) return;
+        average(finished_, exposed_color_, 1, 1, transparent_);
+    } else if (supersample_ > 1 || transparent_) {
+        average(finished_, backdrop_color_, supersample_, 1, transparent_);
     } else {
         glBindFramebuffer(GL_READ_FRAMEBUFFER, backdrop_);
+        return;
     }
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, finished_);
 }
 
 }  // namespace unravel

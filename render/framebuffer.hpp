@@ -16,12 +16,24 @@ struct PixelRect {
 /// - the layer, multisampled, for shapes: it starts out transparent, and is laid over the backdrop only
 ///   where something was drawn.
 /// A software renderer pays for every sample of every pixel, so the layer is kept to the rectangle it needs.
+/// Several exposures make one picture: their mean is a frame blurred by motion.
 /// All means are taken in linear light.
 class Framebuffer {
 public:
-    /// `samples` beyond what the renderer offers are clamped, see samples(). Throws RendererError where the
-    /// renderer cannot hold a picture of this size.
-    Framebuffer(const GlContext& context, int width, int height, int samples, int supersample);
+    struct Options {
+        int width, height;  ///< of the finished frame [px]
+        int samples;        ///< beyond what the renderer offers they are clamped, see samples()
+        int supersample;
+        bool exposures;    ///< frames may have several
+        bool transparent;  ///< frames keep their alpha, and colours are not multiplied by it
+        /// Shaders write the square roots of linear colours to the layer. A software renderer converts each
+        /// sample to sRGB by itself, which takes longer than all else about a sample; one root for a pixel
+        /// costs nothing, and eight bits of it are as fine. What is blended within such a layer is blended in
+        /// roots.
+        bool roots;
+    };
+    /// Throws RendererError where the renderer cannot hold a picture of this size.
+    Framebuffer(const GlContext& context, const Options& options);
 
     int width() const { return width_; }    ///< of the finished frame [px]
     int height() const { return height_; }  ///< likewise
@@ -35,16 +47,22 @@ public:
     /// Makes the layer current, transparent and of greatest depth within `rect`, and confines drawing to it.
     /// Colours are premultiplied by alpha.
     void begin_layer(const PixelRect& rect) const;
-    /// Lays `rect` of the layer over the backdrop and averages down; the finished frame is bound for reading.
-    void finish(const PixelRect& rect) const;
+    /// Lays `rect` of the layer over the backdrop and averages down, as the k-th exposure of n; after the
+    /// last one the finished frame is bound for reading.
+    void finish(const PixelRect& rect, int k = 0, int n = 1) const;
 
 private:
+    void lay_over(const PixelRect& rect) const;
+    void average(GLuint target, GLuint picture, int factor, float share, bool straight) const;
+
     int width_, height_, samples_, supersample_;
-    GlFramebuffer layer_, backdrop_, finished_;
+    bool transparent_;
+    GlFramebuffer layer_, backdrop_, exposed_, finished_;
     GlRenderbuffer layer_depth_, finished_color_;
-    GlTexture layer_color_, backdrop_color_;
+    GlTexture layer_color_, backdrop_color_, exposed_color_;
     GlVertexArray no_vertices_;
     GlProgram lay_, average_;
+    GLint factor_, share_, straight_;
 };
 
 }  // namespace unravel

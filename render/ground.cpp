@@ -43,10 +43,13 @@ Ground::Ground(const DrawScene& scene, float reach, int map_size)
       reach_(reach),
       open_({"map.vert"}, {"frame.glsl", "light.glsl", "ground_open.frag"}),
       visible_({"map.vert"}, {"frame.glsl", "light.glsl", "pattern.glsl", "ground_visible.frag"}),
-      lit_({"map.vert"}, {"frame.glsl", "light.glsl", "ground_lit.frag"}),
-      shown_({"frame.glsl", "ground.vert"}, {"frame.glsl", "ground.frag"}),
-      lit_shadowed_(lit_.uniform("shadowed")),
-      shown_fade_(shown_.uniform("fade")) {
+      soft_({"map.vert"}, {"ground_soft.frag"}),
+      shown_({"frame.glsl", "ground.vert"}, {"frame.glsl", "light.glsl", "ground.frag"}),
+      quiet_({"frame.glsl", "ground.vert"}, {"frame.glsl", "ground_quiet.frag"}),
+      shown_fade_(shown_.uniform("fade")),
+      shown_extent_(shown_.uniform("extent")),
+      quiet_fade_(quiet_.uniform("fade")),
+      quiet_extent_(quiet_.uniform("extent")) {
     // The map holds the scene's surroundings and the shadow of the sphere around it.
     const float radius = 0.5f * (scene.bounds_high - scene.bounds_low).norm();
     const Eigen::Array2f middle(centre_.x(), centre_.z());
@@ -60,24 +63,19 @@ Ground::Ground(const DrawScene& scene, float reach, int map_size)
 
     make_map(open_map_, open_target_, GL_R8, open_size, open_size);
     make_map(visible_map_, visible_target_, GL_R8, width_, height_);
-    // More than eight bits: what is smooth here is to be without steps when it fills the picture.
-    make_map(lit_map_, lit_target_, GL_RGBA16F, width_, height_);
-    const Vec3f quiet = quiet_tone * linear(scene.components_background);
-    glBindTexture(GL_TEXTURE_2D, plain_map_);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB16F, 1, 1, 0, GL_RGB, GL_FLOAT, quiet.data());
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    make_map(soft_map_, soft_target_, GL_R8, width_, height_);
 
-    const Vec3f albedo = linear(scene.ground);
-    for (const GlProgram* program : {&open_, &visible_, &lit_, &shown_}) {
+    for (const GlProgram* program : {&open_, &visible_, &soft_, &shown_, &quiet_}) {
         program->use();
+        const Vec3f albedo = program == &quiet_ ? Vec3f(quiet_tone * linear(scene.components_background))
+                                                : linear(scene.ground);
         glUniform1f(program->uniform("level"), scene.ground_height);
         glUniform4f(program->uniform("region"), low_.x(), low_.y(), extent_.x(), extent_.y());
         glUniform3fv(program->uniform("albedo"), 1, albedo.data());
         ShadowMaps::connect(*program);
         program->sampler("open_map", first_unit);
-        program->sampler("visible_map", first_unit + 1);
-        program->sampler("map", first_unit);
+        program->sampler("visible_map", first_unit);
+        program->sampler("soft_map", first_unit + 1);
     }
 
     // One large square: what lies behind the camera is clipped away.
@@ -123,29 +121,22 @@ void Ground::light(const DrawFrame& frame, const ShadowMaps& shadows) const {
     glDrawArrays(GL_TRIANGLES, 0, 3);
 
     const PixelRect rect = shadow_rect(frame);
-    glBindFramebuffer(GL_FRAMEBUFFER, visible_target_);
     glViewport(0, 0, width_, height_);
     glClearColor(1, 1, 1, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
-    glScissor(rect.x, rect.y, rect.width, rect.height);
-    if (!rect.empty()) {
-        glEnable(GL_SCISSOR_TEST);
-        visible_.use();
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-        glDisable(GL_SCISSOR_TEST);
+    for (const GLuint target : {GLuint{visible_target_}, GLuint{soft_target_}}) {
+        glBindFramebuffer(GL_FRAMEBUFFER, target);
+        glClear(GL_COLOR_BUFFER_BIT);
     }
-
-    glBindFramebuffer(GL_FRAMEBUFFER, lit_target_);
-    glActiveTexture(GL_TEXTURE0 + first_unit);
-    glBindTexture(GL_TEXTURE_2D, open_map_);
-    glActiveTexture(GL_TEXTURE0 + first_unit + 1);
-    glBindTexture(GL_TEXTURE_2D, visible_map_);
-    lit_.use();
-    glUniform1i(lit_shadowed_, 0);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
     if (rect.empty()) return;
     glEnable(GL_SCISSOR_TEST);
-    glUniform1i(lit_shadowed_, 1);
+    glScissor(rect.x, rect.y, rect.width, rect.height);
+    glBindFramebuffer(GL_FRAMEBUFFER, visible_target_);
+    visible_.use();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindFramebuffer(GL_FRAMEBUFFER, soft_target_);
+    glActiveTexture(GL_TEXTURE0 + first_unit);
+    glBindTexture(GL_TEXTURE_2D, visible_map_);
+    soft_.use();
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glDisable(GL_SCISSOR_TEST);
 }
@@ -155,15 +146,22 @@ void Ground::draw_square() const {
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
+void Ground::show(const GlProgram& program, GLint fade, GLint extent, float begin, float end) const {
+    program.use();
+    glUniform2f(fade, reach_ * begin, reach_ * end);
+    glUniform1f(extent, end);
+    draw_square();
+}
+
 void Ground::draw(DrawStyle style, const Vec3f& eye) const {
     if (!seen_from(eye)) return;
-    shown_.use();
-    const bool textured = style == DrawStyle::textured;
+    if (style == DrawStyle::components)
+        return show(quiet_, quiet_fade_, quiet_extent_, quiet_begin, quiet_end);
     glActiveTexture(GL_TEXTURE0 + first_unit);
-    glBindTexture(GL_TEXTURE_2D, textured ? lit_map_ : plain_map_);
-    glUniform2f(shown_fade_, reach_ * (textured ? fade_begin : quiet_begin),
-                reach_ * (textured ? fade_end : quiet_end));
-    draw_square();
+    glBindTexture(GL_TEXTURE_2D, open_map_);
+    glActiveTexture(GL_TEXTURE0 + first_unit + 1);
+    glBindTexture(GL_TEXTURE_2D, soft_map_);
+    show(shown_, shown_fade_, shown_extent_, fade_begin, fade_end);
 }
 
 void Ground::draw_depth(const Vec3f& eye) const {

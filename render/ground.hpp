@@ -8,8 +8,8 @@
 namespace unravel {
 
 /// The ground below a scene, fading into the background with distance. It fills most of the picture and has
-/// no detail of its own, so its light is computed once a frame in a map that lies on it, and looked up from
-/// there.
+/// no detail of its own, so what light reaches it is found once a frame, in maps that lie on it and are
+/// looked up from the picture.
 class Ground {
 public:
     /// `reach`: how far it goes from the scene's centre [m]; `map_size`: texels along the map's longer side.
@@ -23,23 +23,24 @@ public:
     void draw_depth(const Vec3f& eye) const;
 
 private:
-    static constexpr int open_size = 64;  ///< openness to the sky varies slowly
+    static constexpr int open_size = 48;  ///< openness to the sky varies slowly
     static constexpr int first_unit = 3;  ///< texture units before are the shadow maps'
     static constexpr float fade_begin = 0.2f, fade_end = 0.95f;  ///< of its reach
 
     bool seen_from(const Vec3f& eye) const { return scene_->show_ground && eye.y() > scene_->ground_height; }
     PixelRect shadow_rect(const DrawFrame& frame) const;
     void draw_square() const;
+    void show(const GlProgram& program, GLint fade, GLint extent, float begin, float end) const;
 
     const DrawScene* scene_;
     Vec3f key_, centre_;
     float reach_;
     Eigen::Array2f low_, extent_;  ///< x and z of the map's corner, and its size [m]
     int width_, height_;           ///< of the map [px]
-    GlProgram open_, visible_, lit_, shown_;
-    GLint lit_shadowed_, shown_fade_;
-    GlTexture open_map_, visible_map_, lit_map_, plain_map_;
-    GlFramebuffer open_target_, visible_target_, lit_target_;
+    GlProgram open_, visible_, soft_, shown_, quiet_;
+    GLint shown_fade_, shown_extent_, quiet_fade_, quiet_extent_;
+    GlTexture open_map_, visible_map_, soft_map_;
+    GlFramebuffer open_target_, visible_target_, soft_target_;
     GlVertexArray square_;
     GlBuffer corners_;
 };

@@ -21,7 +21,10 @@ namespace unravel {
 
 namespace {
 
-constexpr float key_strength = 1.05f, fill_strength = 0.16f, sky_strength = 0.42f;
+// Share of a component's colour that its surface has between springs far apart: enough to tell folds.
+constexpr float least_sheet = 0.16f;
+
+constexpr float key_strength = 1.2f, fill_strength = 0.14f, sky_strength = 0.36f;
 
 /// The part of the frame block that is the same for every frame and style.
 FrameBlock fixed_block(const DrawScene& scene, const ShadowMaps& shadows, float reach) {
@@ -41,6 +44,8 @@ FrameBlock fixed_block(const DrawScene& scene, const ShadowMaps& shadows, float 
     block.bounce_color << (0.5f * ground + Vec3f::Constant(0.03f)), 0;
     const Vec3f centre = 0.5f * (scene.bounds_low + scene.bounds_high);
     block.ground << centre.x(), centre.z(), 0.2f * reach, 0.95f * reach;
+    // Cloth touches solids at its particles and cuts their corners between them: solids yield by that much.
+    block.shadow.w() = std::min(0.012f, 0.5f * scene.spacing);
     return block;
 }
 
@@ -61,7 +66,7 @@ struct Renderer::Parts {
     WireRenderer wires;
     Ground ground;
     GlProgram depth{{"depth.vert"}, {"depth.frag"}};
-    GlProgram surface{{"frame.glsl", "surface.vert"}, {"frame.glsl", "surface.frag"}};
+    GlProgram surface{{"frame.glsl", "yield.glsl", "surface.vert"}, {"frame.glsl", "surface.frag"}};
     GlProgram sheet{{"frame.glsl", "color.glsl", "sheet.vert"}, {"sheet.frag"}};
     GLint depth_transform = depth.uniform("transform"), sheet_strength = sheet.uniform("strength");
     SolidRenderer::SurfaceUniforms surface_uniforms{surface.uniform("model"), surface.uniform("tint"),
@@ -74,29 +79,33 @@ struct Renderer::Parts {
         : scene(&draw_scene),
           settings(asked),
           renderer(context.renderer()),
-          framebuffer(context, asked.width, asked.height, asked.samples, asked.supersample),
-          wire_framebuffer(context, asked.width, asked.height, context.software() ? 1 : asked.samples,
-                           asked.supersample),
+          framebuffer(context, {asked.width, asked.height, asked.samples, asked.supersample, asked.exposures,
+                                draw_scene.transparent, true}),
+          wire_framebuffer(context, {asked.width, asked.height, context.software() ? 1 : asked.samples,
+                                     asked.supersample, asked.exposures, draw_scene.transparent, false}),
           readback(asked.width, asked.height),
           solids(draw_scene),
           shadows(draw_scene, context.software() ? 1024 : 2048),
-          cloths(draw_scene),
+          cloths(draw_scene, context.software()),
           wires(draw_scene),
           ground(draw_scene, solids.reach(), context.software() ? 512 : 1024),
           block(fixed_block(draw_scene, shadows, solids.reach())) {
         allocate_buffer(GL_UNIFORM_BUFFER, block_buffer, sizeof(FrameBlock));
-        for (const ClothMesh& mesh : draw_scene.cloths) {
+        edges = draw_scene.edges.size();
+        for (const ClothMesh& mesh : draw_scene.cloths)
             for (const std::uint32_t p : mesh.particle) particles = std::max<std::size_t>(particles, p + 1);
-            edges += mesh.edges.size();
-        }
     }
 
     void check(DrawStyle style, const DrawFrame& frame) const;
     void update_block(DrawStyle style, const CameraView& view);
-    void draw_textured(const DrawFrame& frame);
-    void draw_components(const DrawFrame& frame);
+    void draw_textured(DrawStyle style, const DrawFrame& frame, int exposure, int exposures);
+    void draw_components(const DrawFrame& frame, int exposure, int exposures);
+    float wire_gap(const DrawFrame& frame) const;
     const Framebuffer& target(DrawStyle style) const {
-        return style == DrawStyle::textured ? framebuffer : wire_framebuffer;
+        return style == DrawStyle::components ? wire_framebuffer : framebuffer;
+    }
+    Rgb background(DrawStyle style) const {
+        return style == DrawStyle::components ? scene->components_background : scene->background;
     }
     void draw_backdrop(DrawStyle style, const DrawFrame& frame) const;
     bool below_ground(const DrawFrame& frame) const;
@@ -107,8 +116,10 @@ struct Renderer::Parts {
 void Renderer::Parts::check(DrawStyle style, const DrawFrame& frame) const {
     if (frame.positions.size() < particles || frame.solid_poses.size() < scene->solids.size())
         throw std::invalid_argument("a frame lacks positions or poses that its scene needs");
-    if (style == DrawStyle::components && frame.particle_colors.size() < particles)
+    if (style != DrawStyle::textured && frame.particle_colors.size() < particles)
         throw std::invalid_argument("a frame of the component view lacks particle colours");
+    if (!frame.edge_colors.empty() && frame.edge_colors.size() != edges)
+        throw std::invalid_argument("a frame's edge colours are not one for each edge");
     if (!frame.edge_strength.empty() && frame.edge_strength.size() != edges)
         throw std::invalid_argument("a frame's edge strengths are not one for each edge");
 }
@@ -120,21 +131,19 @@ void Renderer::Parts::update_block(DrawStyle style, const CameraView& view) {
     const int factor = framebuffer.supersample();
     block.view_projection = camera.projection * camera.view;
     block.eye << camera.position, 1;
-    block.background << linear(style == DrawStyle::textured ? scene->background
-                                                            : scene->components_background),
-        1;
+    block.background << linear(background(style)), 1;
     block.viewport << static_cast<float>(framebuffer.width() * factor), static_cast<float>(height()),
-        camera.pixels_per_radian * static_cast<float>(height()), std::min(0.004f, 0.3f * wires.spacing());
+        camera.pixels_per_radian * static_cast<float>(height()), std::min(0.004f, 0.3f * scene->spacing);
     update_buffer(GL_UNIFORM_BUFFER, block_buffer, std::span<const FrameBlock>(&block, 1));
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, block_buffer);
 }
 
 void Renderer::Parts::draw_backdrop(DrawStyle style, const DrawFrame& frame) const {
     target(style).begin_backdrop();
-    const Vec3f c = linear(style == DrawStyle::textured ? scene->background : scene->components_background);
-    glClearColor(c.x(), c.y(), c.z(), 1);
+    const Vec3f c = scene->transparent ? Vec3f(0, 0, 0) : linear(background(style));
+    glClearColor(c.x(), c.y(), c.z(), scene->transparent ? 0 : 1);
     glClear(GL_COLOR_BUFFER_BIT);
-    ground.draw(style, frame.camera.position);
+    if (!scene->transparent) ground.draw(style, frame.camera.position);
 }
 
 /// Whether any shape reaches below the ground, which then hides it.
@@ -153,7 +162,7 @@ PixelRect Renderer::Parts::begin_shapes(DrawStyle style, const DrawFrame& frame)
                            : covered_rect(*scene, frame, block.view_projection, framebuffer.whole(), margin);
     if (rect.empty()) return rect;
     target(style).begin_layer(rect);
-    if (!below_ground(frame)) return rect;
+    if (scene->transparent || !below_ground(frame)) return rect;
     depth.use();
     glUniformMatrix4fv(depth_transform, 1, GL_FALSE, block.view_projection.data());
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -162,7 +171,13 @@ PixelRect Renderer::Parts::begin_shapes(DrawStyle style, const DrawFrame& frame)
     return rect;
 }
 
-void Renderer::Parts::draw_textured(const DrawFrame& frame) {
+/// Pixels between neighbouring particles at the scene's centre.
+float Renderer::Parts::wire_gap(const DrawFrame& frame) const {
+    const Vec3f centre = 0.5f * (scene->bounds_low + scene->bounds_high);
+    return scene->spacing * block.viewport.z() / std::max((centre - frame.camera.position).norm(), 1e-3f);
+}
+
+void Renderer::Parts::draw_textured(DrawStyle style, const DrawFrame& frame, int exposure, int exposures) {
     cloths.update_shape(frame);
     shadows.draw([&](const Eigen::Matrix4f& transform, bool coarse) {
         depth.use();
@@ -171,39 +186,42 @@ void Renderer::Parts::draw_textured(const DrawFrame& frame) {
         if (coarse)
             cloths.draw_coarse();
         else
-            cloths.draw_shapes();
+            cloths.draw_casters();
     });
-    ground.light(frame, shadows);
-    draw_backdrop(DrawStyle::textured, frame);
-    const PixelRect rect = begin_shapes(DrawStyle::textured, frame);
+    if (!scene->transparent) ground.light(frame, shadows);
+    draw_backdrop(style, frame);
+    const PixelRect rect = begin_shapes(style, frame);
     if (!rect.empty()) {
         shadows.bind();
         cloths.draw_fabric();
         solids.draw_shaded(frame);
+        if (style == DrawStyle::overlay) {
+            wires.update(frame);
+            wires.draw(height(), wire_gap(frame), true);
+        }
     }
-    framebuffer.finish(rect);
+    framebuffer.finish(rect, exposure, exposures);
 }
 
-void Renderer::Parts::draw_components(const DrawFrame& frame) {
+void Renderer::Parts::draw_components(const DrawFrame& frame, int exposure, int exposures) {
     cloths.update_shape(frame);
-    wires.update(frame, cloths.update_colors(frame));
-    const Vec3f centre = 0.5f * (scene->bounds_low + scene->bounds_high);
-    const float gap =
-        wires.spacing() * block.viewport.z() / std::max((centre - frame.camera.position).norm(), 1e-3f);
+    cloths.update_colors(frame);
+    wires.update(frame);
+    const float gap = wire_gap(frame);
     draw_backdrop(DrawStyle::components, frame);
     const PixelRect rect = begin_shapes(DrawStyle::components, frame);
-    if (rect.empty()) return wire_framebuffer.finish(rect);
+    if (rect.empty()) return wire_framebuffer.finish(rect, exposure, exposures);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1, 1);
     sheet.use();
     // The denser the springs, the more of a component's colour its surface carries.
-    glUniform1f(sheet_strength, std::clamp(1.3f - 0.3f * gap, 0.1f, 1.0f));
+    glUniform1f(sheet_strength, std::clamp(1.3f - 0.3f * gap, least_sheet, 1.0f));
     cloths.draw_shapes();
     surface.use();
     solids.draw_quiet(frame, surface_uniforms);
     glDisable(GL_POLYGON_OFFSET_FILL);
-    wires.draw(height(), gap);
-    wire_framebuffer.finish(rect);
+    wires.draw(height(), gap, false);
+    wire_framebuffer.finish(rect, exposure, exposures);
 }
 
 Renderer::Renderer(const GlContext& context, const DrawScene& scene, RenderSettings settings)
@@ -213,15 +231,21 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-void Renderer::submit(DrawStyle style, const DrawFrame& frame) {
-    parts_->check(style, frame);
+void Renderer::submit(DrawStyle style, std::span<const DrawFrame> exposures) {
+    if (exposures.empty() || (exposures.size() > 1 && !parts_->settings.exposures))
+        throw std::invalid_argument("a picture has one frame, or several where the settings say so");
+    for (const DrawFrame& frame : exposures) parts_->check(style, frame);
     if (pending() == Readback::depth)
         throw std::invalid_argument("collect a frame before submitting another");
-    parts_->update_block(style, frame.camera);
-    if (style == DrawStyle::textured)
-        parts_->draw_textured(frame);
-    else
-        parts_->draw_components(frame);
+    const int n = static_cast<int>(exposures.size());
+    for (int k = 0; k < n; ++k) {
+        const DrawFrame& frame = exposures[static_cast<std::size_t>(k)];
+        parts_->update_block(style, frame.camera);
+        if (style == DrawStyle::components)
+            parts_->draw_components(frame, k, n);
+        else
+            parts_->draw_textured(style, frame, k, n);
+    }
     parts_->readback.start();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 
 #include "render/draw_scene.hpp"
@@ -13,6 +14,7 @@ struct RenderSettings {
     int width = 1280, height = 720;  ///< px
     int samples = 8;                 ///< per pixel; clamped to what the renderer offers
     int supersample = 1;             ///< each pixel is the mean of supersample² drawn ones
+    bool exposures = false;          ///< whether pictures may be the mean of several frames
 };
 
 /// Draws the frames of one scene. Lives on the context's thread. Everything is created with it: drawing
@@ -31,7 +33,9 @@ public:
     void draw(DrawStyle style, const DrawFrame& frame, Image& out);
 
     /// The same in two halves, so that a GPU draws while earlier frames travel: up to three may be under way.
-    void submit(DrawStyle style, const DrawFrame& frame);
+    void submit(DrawStyle style, const DrawFrame& frame) { submit(style, std::span(&frame, 1)); }
+    /// One picture as the mean, in linear light, of frames close in time: what moves is blurred.
+    void submit(DrawStyle style, std::span<const DrawFrame> exposures);
     void collect(Image& out);  ///< the oldest frame under way
     int pending() const;
 

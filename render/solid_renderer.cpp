@@ -16,7 +16,7 @@ SolidRenderer::SolidRenderer(const DrawScene& scene)
     : scene_(&scene),
       centre_(0.5f * (scene.bounds_low + scene.bounds_high)),
       reach_(2.5f * (scene.bounds_high - scene.bounds_low).norm()),
-      shaded_({"frame.glsl", "light.glsl", "sky.glsl", "solid.vert"},
+      shaded_({"frame.glsl", "light.glsl", "sky.glsl", "yield.glsl", "solid.vert"},
               {"frame.glsl", "light.glsl", "pattern.glsl", "solid.frag"}),
       model_(shaded_.uniform("model")),
       albedo_(shaded_.uniform("albedo")),

@@ -20,6 +20,7 @@ struct VideoSettings {
     int crf = -1;           ///< constant quality, smaller is better; −1: the encoder's entry in our table
     std::string preset;     ///< effort, by the encoder's name for it; empty: a fast one
     int threads = 4;        ///< x264's bytes depend on it, so it never follows the machine
+    bool alpha = false;     ///< keep the frames' alpha; .mkv only
     bool faststart = true;  ///< mp4: index before the frames, so that it plays while it loads
 };
 
@@ -47,8 +48,8 @@ public:
     VideoWriter(const VideoWriter&) = delete;
     VideoWriter& operator=(const VideoWriter&) = delete;
 
-    /// Appends a frame; its alpha is ignored. Throws std::invalid_argument on another size than the video's,
-    /// OutputError if the disk does not take it.
+    /// Appends a frame; its alpha is ignored but where the settings keep it. Throws std::invalid_argument on
+    /// another size than the video's, OutputError if the disk does not take it.
     void add(const Image& image);
 
     /// Encodes what is still in the encoder, ends the file and gives it its name. After any number of frames

@@ -126,10 +126,11 @@ std::vector<const EncoderEntry*> encoders_for(const Container& container) {
 OpenEncoder open_encoder(const EncoderEntry& entry, const VideoSettings& settings) {
     const AVCodec* codec = avcodec_find_encoder_by_name(entry.codec);
     if (!codec) throw VideoError("this FFmpeg was built without it");
+    if (settings.alpha && entry.pixels != AV_PIX_FMT_0RGB32) throw VideoError("it keeps no transparency");
     auto context = made<Codec>(avcodec_alloc_context3(codec));
     context->width = settings.width;
     context->height = settings.height;
-    context->pix_fmt = entry.pixels;
+    context->pix_fmt = settings.alpha ? AV_PIX_FMT_RGB32 : entry.pixels;
     context->time_base = {settings.fps_den, settings.fps_num};
     context->framerate = {settings.fps_num, settings.fps_den};
     context->sample_aspect_ratio = {1, 1};

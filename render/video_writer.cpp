@@ -34,6 +34,8 @@ void check_video_settings(const std::filesystem::path& file, const VideoSettings
     // Its clock counts hundredths, and players slow a frame of one hundredth down to ten.
     if (std::string_view(container.muxer) == "gif" && s.fps_num > 50 * static_cast<long long>(s.fps_den))
         throw VideoError("a GIF shows at most 50 frames a second: lower fps or choose .mp4");
+    if (s.alpha && std::string_view(container.muxer) != "matroska")
+        throw VideoError("only .mkv keeps transparency here: choose it, or pictures without a video");
     if (s.threads < 1 || s.threads > 64) throw VideoError("the encoder's threads must be 1 to 64");
 }
 
@@ -99,7 +101,8 @@ VideoWriter::Parts::Parts(const std::filesystem::path& file, const VideoSettings
     frame->sample_aspect_ratio = context.sample_aspect_ratio;
     require(av_frame_get_buffer(frame.get(), 0), file, log);
     if (context.pix_fmt != AV_PIX_FMT_PAL8)
-        scaler = av::make_converter(context.width, context.height, AV_PIX_FMT_RGB0, context.pix_fmt);
+        scaler = av::make_converter(context.width, context.height,
+                                    settings.alpha ? AV_PIX_FMT_RGBA : AV_PIX_FMT_RGB0, context.pix_fmt);
 }
 
 void VideoWriter::Parts::convert(const Image& image) {

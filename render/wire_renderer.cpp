@@ -18,32 +18,27 @@ void WireRenderer::make_table(const Table& table, GLenum format, std::size_t byt
 }
 
 WireRenderer::WireRenderer(const DrawScene& scene)
-    : wire_({"frame.glsl", "color.glsl", "wire.vert"}, {"wire.frag"}),
+    : spacing_(scene.spacing),
+      wire_({"frame.glsl", "color.glsl", "wire.vert"}, {"wire.frag"}),
       dot_({"frame.glsl", "color.glsl", "dot.vert"}, {"dot.frag"}),
       width_(wire_.uniform("width")),
       wire_spacing_(wire_.uniform("spacing")),
-      radius_(dot_.uniform("radius")) {
-    std::vector<std::array<std::uint32_t, 2>> edges;
-    std::vector<float> lengths;
-    for (const ClothMesh& mesh : scene.cloths) {
-        edges.insert(edges.end(), mesh.edges.begin(), mesh.edges.end());
-        for (const std::uint32_t p : mesh.particle) particles_ = std::max<std::size_t>(particles_, p + 1);
-        // Sides of the flat triangles tell the springs' length before any frame is seen.
-        for (const auto& [a, b, c] : mesh.triangles) lengths.push_back((mesh.uv[a] - mesh.uv[b]).norm());
-    }
-    edges_ = edges.size();
-    if (!lengths.empty()) {
-        const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-        std::nth_element(lengths.begin(), middle, lengths.end());
-        spacing_ = *middle;
-    }
+      own_colors_(wire_.uniform("own_colors")),
+      wire_roots_(wire_.uniform("roots")),
+      radius_(dot_.uniform("radius")),
+      dot_roots_(dot_.uniform("roots")) {
+    // Display vertices between particles are no ends of springs.
+    for (const auto& [a, b] : scene.edges) particles_ = std::max<std::size_t>(particles_, std::max(a, b) + 1);
+    edges_ = scene.edges.size();
     make_table(points_, GL_RGBA32F, 16 * particles_);
     make_table(colors_, GL_RGBA8, 4 * particles_);
     make_table(edge_table_, GL_RG32UI, 8 * edges_);
     make_table(strengths_, GL_R8, edges_);
-    update_buffer(GL_TEXTURE_BUFFER, edge_table_.buffer, edges);
+    make_table(edge_colors_, GL_RGBA8, 4 * edges_);
+    update_buffer(GL_TEXTURE_BUFFER, edge_table_.buffer, scene.edges);
     solid_.assign(edges_, 255);
     scratch_points_.resize(particles_);
+    scratch_colors_.resize(std::max(particles_, edges_));
 
     // Two triangles for each quad: vertices 4 k … 4 k + 3.
     std::vector<std::uint32_t> quads;
@@ -60,30 +55,38 @@ WireRenderer::WireRenderer(const DrawScene& scene)
     wire_.sampler("colors", 1);
     wire_.sampler("edges", 2);
     wire_.sampler("strengths", 3);
+    wire_.sampler("edge_colors", 4);
     dot_.sampler("points", 0);
     dot_.sampler("colors", 1);
 }
 
-void WireRenderer::update(const DrawFrame& frame, std::span<const std::array<std::uint8_t, 4>> colors) {
+void WireRenderer::update(const DrawFrame& frame) {
     for (std::size_t i = 0; i < particles_; ++i) {
         const Vec3f& p = frame.positions[i];
         scratch_points_[i] = {p.x(), p.y(), p.z(), 1};
     }
     update_buffer(GL_TEXTURE_BUFFER, points_.buffer, scratch_points_);
-    update_buffer(GL_TEXTURE_BUFFER, colors_.buffer, colors);
+    const auto upload = [&](const Table& table, std::span<const Rgb> colors) {
+        for (std::size_t i = 0; i < colors.size(); ++i)
+            scratch_colors_[i] = {colors[i].r, colors[i].g, colors[i].b, 255};
+        update_buffer(GL_TEXTURE_BUFFER, table.buffer, std::span(scratch_colors_).first(colors.size()));
+    };
+    upload(colors_, std::span(frame.particle_colors).first(particles_));
+    by_edge_ = !frame.edge_colors.empty();
+    if (by_edge_) upload(edge_colors_, frame.edge_colors);
     update_buffer(GL_TEXTURE_BUFFER, strengths_.buffer,
                   frame.edge_strength.empty() ? solid_ : frame.edge_strength);
 }
 
 void WireRenderer::bind_tables() const {
     int unit = 0;
-    for (const Table* table : {&points_, &colors_, &edge_table_, &strengths_}) {
+    for (const Table* table : {&points_, &colors_, &edge_table_, &strengths_, &edge_colors_}) {
         glActiveTexture(GL_TEXTURE0 + unit++);
         glBindTexture(GL_TEXTURE_BUFFER, table->texture);
     }
 }
 
-void WireRenderer::draw(int height, float gap) const {
+void WireRenderer::draw(int height, float gap, bool roots) const {
     if (gap < invisible_gap) return;
     bind_tables();
     glBindVertexArray(vertex_array_);
@@ -93,13 +96,16 @@ void WireRenderer::draw(int height, float gap) const {
     wire_.use();
     glUniform1f(width_, line_width(height));
     glUniform1f(wire_spacing_, spacing_);
+    glUniform1i(own_colors_, by_edge_ ? 1 : 0);
+    glUniform1i(wire_roots_, roots ? 1 : 0);
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * edges_), GL_UNSIGNED_INT, nullptr);
 
     // Dots only where they leave the lines between them in sight.
-    const float radius = std::min(1.6f * line_width(height), 0.2f * gap);
-    if (radius > 1.1f * line_width(height)) {
+    const float radius = std::min(1.5f * line_width(height), 0.16f * gap);
+    if (radius > 1.15f * line_width(height)) {
         dot_.use();
         glUniform1f(radius_, radius);
+        glUniform1i(dot_roots_, roots ? 1 : 0);
         glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * particles_), GL_UNSIGNED_INT, nullptr);
     }
     glDepthMask(GL_TRUE);

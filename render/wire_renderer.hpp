@@ -13,13 +13,11 @@ class WireRenderer {
 public:
     explicit WireRenderer(const DrawScene& scene);
 
-    /// `colors` (particles): sRGB.
-    void update(const DrawFrame& frame, std::span<const std::array<std::uint8_t, 4>> colors);
-    /// Typical length of a spring at rest [m].
-    float spacing() const { return spacing_; }
+    void update(const DrawFrame& frame);
     /// `height`: of the picture being drawn [px]; `gap`: pixels between neighbouring particles at the scene's
     /// centre. Nothing is drawn where springs are too dense to be told apart.
-    void draw(int height, float gap) const;
+    /// `roots`: the layer holds square roots.
+    void draw(int height, float gap, bool roots) const;
 
     /// Width of a line [px] in a picture of this height, where springs are not too dense for it.
     static float line_width(int height) { return 2.0f * static_cast<float>(height) / 720; }
@@ -34,14 +32,16 @@ private:
     void bind_tables() const;
 
     std::size_t particles_ = 0, edges_ = 0;
-    float spacing_ = 0.01f;
+    float spacing_;
     std::vector<std::array<float, 4>> scratch_points_;
+    std::vector<std::array<std::uint8_t, 4>> scratch_colors_;
+    bool by_edge_ = false;             ///< edges have colours of their own
     std::vector<std::uint8_t> solid_;  ///< (edges) 255: what an empty edge_strength means
-    Table points_, colors_, edge_table_, strengths_;
+    Table points_, colors_, edge_table_, strengths_, edge_colors_;
     GlVertexArray vertex_array_;
     GlBuffer quads_;
     GlProgram wire_, dot_;
-    GLint width_, wire_spacing_, radius_;
+    GLint width_, wire_spacing_, own_colors_, wire_roots_, radius_, dot_roots_;
 };
 
 }  // namespace unravel

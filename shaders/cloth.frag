@@ -43,5 +43,5 @@ void main() {
     FabricLight light = fabric_light(world, n, tilted(n, cloth.tilt), v, mean_albedo[gl_FrontFacing ? 0 : 1],
                                      gl_FrontFacing ? openness.x : openness.y, pattern_turn());
 #endif
-    color = vec4(tone(cloth.albedo * light.diffuse + light.sheen), 1.0);
+    color = vec4(sqrt(tone(cloth.albedo * light.diffuse + light.sheen)), 1.0);  // the layer holds roots
 }

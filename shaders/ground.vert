@@ -1,10 +1,13 @@
 layout(location = 0) in vec3 position;
 uniform vec4 region;
+uniform float extent;  // share of the square to be drawn
 out vec2 at_map;
 out vec2 from_centre;  // m
 
 void main() {
-    at_map = (position.xz - region.xy) / region.zw;
-    from_centre = position.xz - ground.xy;
-    gl_Position = view_projection * vec4(position, 1.0);
+    vec3 place = vec3(ground.x, position.y, ground.y);
+    place.xz += (position.xz - ground.xy) * extent;
+    at_map = (place.xz - region.xy) / region.zw;
+    from_centre = place.xz - ground.xy;
+    gl_Position = view_projection * vec4(place, 1.0);
 }

@@ -6,13 +6,21 @@ uniform sampler2D layer;
 #endif
 out vec4 color;
 
+// Linear light of a sample.
+vec4 light(vec4 stored) {
+#if ROOTS
+    stored.rgb *= stored.rgb;
+#endif
+    return stored;
+}
+
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
 #if SAMPLES > 1
     vec4 sum = vec4(0.0);
-    for (int i = 0; i < SAMPLES; ++i) sum += texelFetch(layer, at, i);
+    for (int i = 0; i < SAMPLES; ++i) sum += light(texelFetch(layer, at, i));
     color = sum / float(SAMPLES);
 #else
-    color = texelFetch(layer, at, 0);
+    color = light(texelFetch(layer, at, 0));
 #endif
 }

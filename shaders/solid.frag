@@ -21,5 +21,5 @@ void main() {
         float highlight = gloss * (0.04 + 0.5 * grazing) * (26.0 / 8.0) * pow(nh, 24.0);
         result += (albedo + highlight) * key_color.rgb * (nl * key_visibility(world, n, pattern_turn()));
     }
-    color = vec4(tone(result), 1.0) * (1.0 - fade);
+    color = vec4(sqrt(tone(result) * (1.0 - fade)), 1.0 - fade);  // the layer holds roots
 }

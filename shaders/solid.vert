@@ -9,5 +9,5 @@ void main() {
     world = (model * vec4(position, 1.0)).xyz;
     world_normal = mat3(model) * normal;
     openness = sky_openness(world, world_normal).x;
-    gl_Position = view_projection * vec4(world, 1.0);
+    gl_Position = yielding(world);
 }

@@ -8,5 +8,5 @@ out vec3 world_normal;
 void main() {
     world = (model * vec4(position, 1.0)).xyz;
     world_normal = mat3(model) * normal;
-    gl_Position = view_projection * vec4(world, 1.0);
+    gl_Position = yielding(world);
 }

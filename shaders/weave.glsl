@@ -30,7 +30,7 @@ Woven woven(vec2 uv, bool front) {
     weft = mix(a, b, 0.22);
 #elif WEAVE == 1
     weft = b;
-    over = mix(0.62, stripe((s.x + s.y) / 4.0, 0.62, (pixel.x + pixel.y) / 4.0), 0.8);
+    over = stripe((s.x + s.y) / 4.0, 0.5, (pixel.x + pixel.y) / 4.0);
 #elif WEAVE == 2
     warp = mix(b, a, stripe(uv.x / period, 0.5, size.x / period));
     weft = mix(b, a, stripe(uv.y / period, 0.5, size.y / period));

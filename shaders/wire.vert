@@ -4,6 +4,8 @@ uniform samplerBuffer points;    // particles' positions [m]
 uniform samplerBuffer colors;    // particles' colours, sRGB
 uniform usamplerBuffer edges;    // particle pairs
 uniform samplerBuffer strengths; // 1 solid … 0 not drawn
+uniform samplerBuffer edge_colors; // sRGB
+uniform bool own_colors;         // edges have colours of their own
 uniform float width;             // px
 uniform float spacing;           // m, typical length of an edge at rest
 noperspective out float across;  // px from the line's middle
@@ -34,7 +36,7 @@ void main() {
     vec2 forward = length_px > 1e-4 ? run / length_px : vec2(1.0, 0.0);
     // Where springs stand closer than the pen is wide, a finer pen keeps them apart; below a pixel it pales instead.
     float gap = spacing * viewport.z / max(0.5 * (ca.w + cb.w), 1e-3);
-    float fine = min(width, max(0.24 * gap, 0.25)), half_width = 0.5 * max(fine, 1.0);
+    float fine = min(width, max(0.2 * gap, 0.25)), half_width = 0.5 * max(fine, 1.0);
     // Wires too dense to be told apart leave the field to the surface.
     pen = vec2(half_width, strength * min(fine, 1.0) * smoothstep(1.2, 4.0, gap));
 
@@ -45,6 +47,10 @@ void main() {
     gl_Position = clip;
     across = side * reach;
     along = end;
-    color_a = linear(texelFetch(colors, int(ends.x)).rgb);
-    color_b = linear(texelFetch(colors, int(ends.y)).rgb);
+    if (own_colors) {
+        color_a = color_b = linear(texelFetch(edge_colors, edge).rgb);
+    } else {
+        color_a = linear(texelFetch(colors, int(ends.x)).rgb);
+        color_b = linear(texelFetch(colors, int(ends.y)).rgb);
+    }
 }

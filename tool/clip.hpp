@@ -10,15 +10,15 @@
 #include "sim/frame_record.hpp"
 #include "sim/model.hpp"
 #include "sim/scene/scene.hpp"
+#include "tool/clip_view.hpp"
 #include "tool/run_folder.hpp"
 
 namespace unravel {
 
 /// Which pictures and videos a clip is to have.
 struct ClipOptions {
-    std::vector<DrawStyle> styles{DrawStyle::textured, DrawStyle::components};
+    std::vector<ClipView> views{{Layout::textured, 0, "textured"}, {Layout::components, 0, "components"}};
     DeviceChoice device;
-    std::size_t camera = 0;          ///< of the scene's
     std::filesystem::path textures;  ///< folder that the scene's pictures are named relative to
     int samples = 4;
     int supersample = 1;
@@ -30,7 +30,7 @@ struct ClipOptions {
     bool reuse_pictures = false;  ///< frames whose picture lies there already are read, not drawn
     bool keep_pictures = true;    ///< write PNG frames
     /// Called with every finished picture, by several threads at once; empty: nobody looks.
-    std::function<void(DrawStyle style, int frame, const Image& picture)> picture;
+    std::function<void(const ClipView& view, int frame, const Image& picture)> picture;
 };
 
 /// What became of it.

@@ -11,12 +11,25 @@
 
 namespace unravel {
 
+namespace {
+
+constexpr const char* install_encoders =
+    "apt-get install --reinstall libavcodec59 libavformat59 libx264-164 libvpx7 (Debian 12; each encoder is "
+    "a library "
+    "of its own), or choose another --video";
+
+bool any_opens(const std::vector<EncoderVerdict>& encoders, const std::string& ending) {
+    return std::any_of(encoders.begin(), encoders.end(),
+                       [&](const auto& e) { return e.opens && e.ending == ending; });
+}
+
+}  // namespace
+
 int command_doctor(const Options& options) {
     const std::vector<RendererAttempt> routes = probe_renderers();
     const std::vector<EncoderVerdict> encoders = probe_encoders();
     const bool draws = std::any_of(routes.begin(), routes.end(), [](const auto& r) { return r.usable; });
-    const bool encodes = std::any_of(encoders.begin(), encoders.end(),
-                                     [](const auto& e) { return e.opens && e.ending == ".mp4"; });
+    const bool encodes = any_opens(encoders, ".mp4");
     if (options.json) {
         nlohmann::ordered_json json{{"draws", draws}, {"encodes", encodes}};
         for (const RendererAttempt& r : routes) {
@@ -42,6 +55,10 @@ int command_doctor(const Options& options) {
         for (const EncoderVerdict& e : encoders) {
             fmt::print("  {} {:<6} {}{}{}\n", e.opens ? "yes" : "no ", e.ending, e.codec, e.opens ? "" : ": ",
                        e.reason);
+        }
+        for (const char* ending : {".mp4", ".webm", ".mkv", ".gif"}) {
+            if (!any_opens(encoders, ending))
+                fmt::print("  nothing makes {}\n      try: {}\n", ending, install_encoders);
         }
         fmt::print("{}\n",
                    draws && encodes ? "all that is needed is here" : "something is missing, see above");

@@ -15,6 +15,7 @@
 #include "tool/progress.hpp"
 #include "tool/render_options.hpp"
 #include "tool/report/page.hpp"
+#include "tool/turntable.hpp"
 
 namespace unravel {
 
@@ -31,6 +32,33 @@ nlohmann::ordered_json earlier_run(const RunFolder& folder) {
     return read.is_object() ? read : run;
 }
 
+void print_files(const Options& options, const RunFolder& folder, const ClipOptions& clip_options,
+                 const ClipReport& report) {
+    if (options.quiet) return;
+    for (const std::string& video : report.videos) fmt::print("  {}\n", (folder.root / video).string());
+    if (!report.videos.empty() || !clip_options.keep_pictures) return;
+    for (const ClipView& view : clip_options.views)
+        fmt::print("  {}\n", folder.picture(view.name, clip_options.first).string());
+}
+
+// One turn about a frame that stands still; the run's page stays as it is.
+int draw_turntable(const Options& options, const Scene& scene, const ClothModel& model,
+                   const Placement& placement, const std::array<RunFolder, 2>& from_to,
+                   const ClipOptions& clip_options, int frame, std::uint64_t hash) {
+    const auto& [cached, folder] = from_to;
+    const FrameRecord record = read_record(cached.record(frame), hash, model.size(), model.springs.size());
+    Progress progress(scene.name, clip_options.last + 1, options.quiet);
+    const FrameSource turn = turntable_source(clip_options, record);
+    const FrameSource source = [&]() -> std::optional<FrameRecord> {
+        return InterruptWatch::requested() ? std::nullopt : turn();
+    };
+    const ClipReport report = make_clip(scene, model, placement, folder, clip_options, source,
+                                        [&](int done) { progress.show(done + 1, 0); });
+    progress.finish();
+    print_files(options, folder, clip_options, report);
+    return InterruptWatch::requested() ? exit_interrupted : exit_done;
+}
+
 }  // namespace
 
 int command_render(const Options& options) {
@@ -42,8 +70,12 @@ int command_render(const Options& options) {
     }
     Scene scene = load_scene(cached.scene(), options.overrides);
     const std::uint64_t hash = scene_hash(scene);
+    const Scene as_run = scene;
     ClipOptions clip_options = clip_options_of(options, scene);
     clip_options.textures = cached.root;
+    const bool turns = options.turntable > 0;
+    const int still = options.still >= 0 ? options.still : scene.clip.frames() - 1;
+    if (turns) make_turntable(scene, clip_options, options.turntable, still);
     const RunFolder folder{options.output.empty() ? cached.root : options.output};
     check_clip(scene, folder, clip_options);
     const FolderLock lock(folder.root);
@@ -52,13 +84,16 @@ int command_render(const Options& options) {
 
     Placement placement;
     const ClothModel model = build_model(scene, placement);
-    const int frames = cached_frames(cached, scene, hash, model.size(), model.springs.size());
-    if (frames <= clip_options.first) {
+    const int frames = cached_frames(cached, as_run, hash, model.size(), model.springs.size());
+    if (frames <= (turns ? 0 : clip_options.first)) {
         throw FolderError(
             fmt::format("'{}' holds {} usable frames of this scene, and the first asked for is {}: was it "
                         "made from another scene, or stopped early?",
                         cached.root.string(), frames, clip_options.first));
     }
+    if (turns)
+        return draw_turntable(options, scene, model, placement, {cached, folder}, clip_options,
+                              std::min(still, frames - 1), hash);
     const int last = std::min(frames - 1, clip_options.last);
     Progress progress(scene.name, last - clip_options.first + 1, options.quiet);
     int next = 0;
@@ -75,9 +110,7 @@ int command_render(const Options& options) {
         return read();
     };
     Previews previews = previews_of(scene, clip_options);
-    clip_options.picture = [&](DrawStyle style, int frame, const Image& picture) {
-        previews.add(style, frame, picture);
-    };
+    clip_options.picture = take_previews(previews);
     const ClipReport report = make_clip(scene, model, placement, folder, clip_options, source,
                                         [&](int frame) { progress.show(frame - clip_options.first + 1, 0); });
     progress.finish();
@@ -92,8 +125,8 @@ int command_render(const Options& options) {
     run["encoder"] = report.encoders;
     write_whole_file(folder.report(), report_page(scene, model, folder, recorder.frames(), reports, previews,
                                                   page_facts(run)));
+    print_files(options, folder, clip_options, report);
     if (!options.quiet) {
-        for (const std::string& video : report.videos) fmt::print("  {}\n", (folder.root / video).string());
         fmt::print("  {}\n", folder.report().string());
     }
     return InterruptWatch::requested() ? exit_interrupted : exit_done;

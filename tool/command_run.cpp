@@ -84,9 +84,7 @@ int simulate_clip(const Options& options, bool pictures) {
     PageRecorder recorder(simulation.model);
     Previews previews = previews_of(scene, clip_options);
     if (pictures) {
-        clip_options.picture = [&](DrawStyle style, int frame, const Image& picture) {
-            previews.add(style, frame, picture);
-        };
+        clip_options.picture = take_previews(previews);
     }
     // A run that can't go on ends its clip as one that was stopped does: what it has is kept.
     std::optional<SimulationError> failure;

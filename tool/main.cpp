@@ -36,16 +36,33 @@ void add_run_options(CLI::App& command, Options& o) {
 
 void add_picture_options(CLI::App& command, Options& o) {
     command.add_option("--frames", o.frames, "A-B: only these frames");
-    command.add_option("--style", o.style, "textured, components or both")->capture_default_str();
+    command
+        .add_option("--style", o.style,
+                    "textured, components, both, overlay or side-by-side; several with commas between")
+        ->capture_default_str();
+    command.add_option("--show", o.show, "what the colours of the component view tell (default: components)")
+        ->check(CLI::IsMember({"components", "splitting", "strain", "velocity", "contact"}));
+    command.add_flag("--legend", o.legend, "tell in the component view what its colours mean");
+    command.add_flag("--transparent", o.transparent,
+                     "no ground, no background: frames with an alpha channel");
+    command.add_option("--motion-blur", o.motion_blur, "sub-frames that each picture is the mean of")
+        ->check(CLI::Range(1, 64));
+    command
+        .add_option("--subdivide", o.subdivide, "draw each cell as 4 to the power of this many smooth ones")
+        ->check(CLI::Range(0, 3));
     command.add_option("--size", o.size, "WxH, both even (default: the scene's)");
-    command.add_option("--camera", o.camera, "one of the scene's cameras by name (default: the first)");
+    command.add_option("--camera", o.camera,
+                       "the scene's cameras by name, with commas between, or all (default: the first)");
     command.add_option("--device", o.device, "auto, gpu, software or the number of an EGL device")
         ->capture_default_str();
     command.add_option("--samples", o.samples, "per pixel, clamped to what the renderer offers")
         ->capture_default_str();
     command.add_option("--supersample", o.supersample, "draw this many times larger and average")
         ->check(CLI::Range(1, 4));
-    command.add_option("--video", o.video, "mp4, webm, mkv (lossless), gif or none")->capture_default_str();
+    command
+        .add_option("--video", o.video,
+                    "mp4, webm, mkv (lossless), gif or none (default: mp4; mkv where --transparent)")
+        ->check(CLI::IsMember({"mp4", "webm", "mkv", "gif", "none"}));
     command.add_option("--codec", o.codec, "this encoder and no other");
     command.add_option("--crf", o.crf, "quality of the video, smaller is better")->check(CLI::Range(0, 63));
     command.add_option("--preset", o.preset, "the encoder's effort");
@@ -126,6 +143,24 @@ int main(int argc, char** argv) {
     render->add_option("--set", options.overrides, "key=value of [camera], [look] or clip.size")
         ->allow_extra_args(false);
     add_picture_options(*render, options);
+    render->add_option("--still", options.still, "this frame alone, without a video")
+        ->check(CLI::NonNegativeNumber);
+    render
+        ->add_option("--turntable", options.turntable,
+                     "seconds of one turn about a frame that stands still: --still, or the last")
+        ->check(CLI::Range(0.1, 600.0));
+    CLI::App* sheet = command("sheet", "both views of a frame of each run in one picture", command_sheet);
+    sheet->add_option("runs", options.runs, "RUN_DIR or RUN_DIR:FRAME (default: its last frame)")->required();
+    sheet->add_option("-o", options.output, "PNG file (default: sheet.png)");
+    sheet->add_option("--size", options.size, "WxH of each picture, both even (default: the scene's)");
+    sheet->add_option("--camera", options.camera, "one of the scene's cameras (default: the first)");
+    sheet->add_option("--show", options.show, "what the colours of the component view tell")
+        ->check(CLI::IsMember({"components", "splitting", "strain", "velocity", "contact"}));
+    sheet->add_option("--samples", options.samples, "per pixel")->capture_default_str();
+    sheet->add_option("--supersample", options.supersample, "draw this many times larger and average")
+        ->check(CLI::Range(1, 4));
+    sheet->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
+        ->capture_default_str();
     CLI::App* accuracy = takes(
         command("accuracy", "what accuracy costs in time: integrators, steps, thresholds and tolerances",
                 command_accuracy),

@@ -28,10 +28,15 @@ struct Options {
     bool resume = false, force = false, quiet = false, json = false;
     bool compare_whole = false;
     std::string device = "auto";
-    std::string style = "both";  ///< textured, components, both
+    std::string style = "both";  ///< views, separated by commas
     std::string size;            ///< --size WxH
-    std::string camera;          ///< name of one of the scene's; empty: its first
-    std::string video = "mp4";   ///< mp4, webm, mkv, gif, none
+    std::string camera;          ///< names of the scene's, separated by commas, or all; empty: its first
+    std::string video;           ///< mp4, webm, mkv, gif, none; empty: mp4, or mkv where frames have an alpha
+    std::string show;            ///< what wires' colours tell; empty: as the scene says
+    bool legend = false, transparent = false;
+    int motion_blur = 0, subdivide = -1;  ///< as the scene says
+    int still = -1;                       ///< this frame alone, without a video; −1: no
+    double turntable = 0;                 ///< s of one turn about a frame that stands still; 0: none
     std::string codec, preset;
     int crf = -1;
     int samples = 4, supersample = 1;
@@ -39,6 +44,7 @@ struct Options {
     double budget = 10;                       ///< --budget, minutes
     double error = 1e-3;                      ///< --error, of the cloth's diagonal
     bool allow_unstable = false;              ///< run although explicit springs are beyond their limit
+    std::vector<std::string> runs;            ///< sheet: RUN_DIR[:FRAME]
     std::vector<std::string> cases;           ///< stability: these only
     bool map = false;                         ///< stability: the (stiffness, step) map
     int frame = 0, step = 0;                  ///< inspect: --frame, and --step within it (0: its last)
@@ -51,6 +57,7 @@ struct Options {
 int command_run(const Options& options);
 int command_simulate(const Options& options);
 int command_render(const Options& options);
+int command_sheet(const Options& options);
 int command_accuracy(const Options& options);
 int command_inspect(const Options& options);
 int command_reproduce(const Options& options);

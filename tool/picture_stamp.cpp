@@ -19,8 +19,8 @@ namespace {
 constexpr std::size_t largest_stamp = 1 << 20;
 constexpr std::size_t largest_texture = std::size_t{1} << 30;
 
-fs::path stamp_file(const RunFolder& folder, DrawStyle style) {
-    return folder.frames() / fmt::format("{}_drawn_with.json", style_name(style));
+fs::path stamp_file(const RunFolder& folder, const std::string& view) {
+    return folder.frames() / fmt::format("{}_drawn_with.json", view);
 }
 
 // The file under a texture's name may be replaced by another picture.
@@ -33,8 +33,8 @@ std::string texture_hash(const std::string& texture) {
     }
 }
 
-bool is_picture(const std::string& name, DrawStyle style) {
-    const std::string start = std::string(style_name(style)) + "_";
+bool is_picture(const std::string& name, const std::string& view) {
+    const std::string start = view + "_";
     if (!name.starts_with(start) || !name.ends_with(".png")) return false;
     return std::all_of(name.begin() + static_cast<std::ptrdiff_t>(start.size()), name.end() - 4,
                        [](unsigned char c) { return std::isdigit(c) != 0; });
@@ -64,8 +64,9 @@ std::string picture_stamp(const Scene& scene, const ClipOptions& options, const 
     return json.dump(2) + "\n";
 }
 
-bool claim_pictures(const RunFolder& folder, DrawStyle style, const std::string& stamp, bool whole_clip) {
-    const fs::path file = stamp_file(folder, style);
+bool claim_pictures(const RunFolder& folder, const std::string& view, const std::string& stamp,
+                    bool whole_clip) {
+    const fs::path file = stamp_file(folder, view);
     if (fs::exists(file)) {
         const std::vector<std::uint8_t> before = read_whole_file(file, largest_stamp);
         if (std::string(before.begin(), before.end()) == stamp) return true;
@@ -74,7 +75,7 @@ bool claim_pictures(const RunFolder& folder, DrawStyle style, const std::string&
     }
     if (!whole_clip) return false;
     for (const auto& entry : fs::directory_iterator(folder.frames())) {
-        if (is_picture(entry.path().filename().string(), style)) fs::remove(entry.path());
+        if (is_picture(entry.path().filename().string(), view)) fs::remove(entry.path());
     }
     write_whole_file(file, stamp);
     return false;

@@ -8,6 +8,7 @@
 #include "base/file_errors.hpp"
 #include "base/whole_file.hpp"
 #include "sim/scene/load.hpp"
+#include "tool/clip_view.hpp"
 
 namespace unravel {
 
@@ -45,20 +46,16 @@ void create_folder(const fs::path& folder) {
 
 }  // namespace
 
-const char* style_name(DrawStyle style) {
-    return style == DrawStyle::textured ? "textured" : "components";
-}
-
 fs::path RunFolder::record(int frame) const {
     return cache() / fmt::format("frame_{:04}.state", frame);
 }
 
-fs::path RunFolder::picture(DrawStyle style, int frame) const {
-    return frames() / fmt::format("{}_{:04}.png", style_name(style), frame);
+fs::path RunFolder::picture(const std::string& view, int frame) const {
+    return frames() / fmt::format("{}_{:04}.png", view, frame);
 }
 
-fs::path RunFolder::video(DrawStyle style, const std::string& ending) const {
-    return root / (style_name(style) + ending);
+fs::path RunFolder::video(const std::string& view, const std::string& ending) const {
+    return root / (view + ending);
 }
 
 std::uint64_t scene_hash(const Scene& scene) {
@@ -100,8 +97,10 @@ std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing exi
         // The scene goes last: what is half removed when the program ends still counts as a run.
         for (const fs::path& path : {folder.cache(), folder.frames()}) fs::remove_all(path, error);
         for (const char* ending : {".mp4", ".webm", ".mkv", ".gif"}) {
-            for (const DrawStyle style : {DrawStyle::textured, DrawStyle::components})
-                fs::remove(folder.video(style, ending), error);
+            for (std::size_t camera = 0; camera < scene.cameras.size(); ++camera) {
+                for (const Layout layout : all_layouts)
+                    fs::remove(folder.video(make_view(scene, layout, camera).name, ending), error);
+            }
         }
         for (const char* name : {"run.json", "stats.csv", "report.html", "scene.toml"})
             fs::remove(folder.root / name, error);

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "render/draw_scene.hpp"
 #include "sim/frame_record.hpp"
 #include "sim/scene/scene.hpp"
 
@@ -23,14 +22,13 @@ struct RunFolder {
     std::filesystem::path frames() const { return root / "frames"; }
     std::filesystem::path failure() const { return root / "failure"; }
     std::filesystem::path record(int frame) const;
-    std::filesystem::path picture(DrawStyle style, int frame) const;
-    std::filesystem::path video(DrawStyle style, const std::string& ending) const;
+    /// `view`: its name, see ClipView.
+    std::filesystem::path picture(const std::string& view, int frame) const;
+    std::filesystem::path video(const std::string& view, const std::string& ending) const;
 };
 
 /// No stats.csv is longer; one that is would be no such file.
 inline constexpr std::size_t largest_stats = std::size_t{1} << 30;
-
-const char* style_name(DrawStyle style);
 
 /// What was asked for cannot be done with the folder as it is; what() says how to go on. Exit code 2.
 class FolderError : public std::runtime_error {

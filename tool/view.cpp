@@ -7,6 +7,8 @@
 
 #include "render/png.hpp"
 #include "sim/solids/motion.hpp"
+#include "tool/subdivision.hpp"
+#include "tool/wire_colors.hpp"
 
 namespace unravel {
 
@@ -45,15 +47,19 @@ SolidShape shape_of(Shape shape) {
 }
 
 // The grid as triangles. A tube's seam column is doubled, so that uv runs on to the full circumference there.
-ClothMesh mesh_of(const ClothPatch& patch, const ClothAppearance& appearance) {
+// `level`: of subdivision; the finer grid's points then stand at `first` in DrawFrame::positions.
+ClothMesh mesh_of(const ClothPatch& patch, const ClothAppearance& appearance, int level, std::size_t first) {
     ClothMesh mesh;
     mesh.appearance = appearance;
-    const int columns = patch.cells_u() + 1, rows = patch.particles[1];
-    const float du = static_cast<float>(patch.size[0] / std::max(patch.cells_u(), 1));
-    const float dv = static_cast<float>(patch.size[1] / std::max(patch.cells_v(), 1));
+    const int factor = 1 << level, columns = factor * patch.cells_u() + 1,
+              rows = factor * patch.cells_v() + 1;
+    const int points = patch.tube ? columns - 1 : columns;
+    const float du = static_cast<float>(patch.size[0] / std::max(columns - 1, 1));
+    const float dv = static_cast<float>(patch.size[1] / std::max(rows - 1, 1));
     for (int j = 0; j < rows; ++j) {
         for (int i = 0; i < columns; ++i) {
-            mesh.particle.push_back(patch.at(i, j));
+            mesh.particle.push_back(level == 0 ? patch.at(i, j)
+                                               : static_cast<std::uint32_t>(first + j * points + i % points));
             mesh.uv.push_back({du * static_cast<float>(i), dv * static_cast<float>(j)});
         }
     }
@@ -123,6 +129,17 @@ void set_bounds(const Scene& scene, const Placement& placement, DrawScene& out) 
     out.bounds_high = high;
 }
 
+// Median rest length of the stretch springs.
+float spacing_of(const ClothModel& model) {
+    std::vector<double> rest(
+        model.springs.rest.begin(),
+        model.springs.rest.begin() + static_cast<std::ptrdiff_t>(model.springs.stretch_count));
+    if (rest.empty()) return DrawScene{}.spacing;
+    const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);
+    std::nth_element(rest.begin(), middle, rest.end());
+    return static_cast<float>(*middle);
+}
+
 }  // namespace
 
 Rgb parse_color(const std::string& text) {
@@ -139,6 +156,7 @@ Rgb parse_color(const std::string& text) {
 DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Placement& placement,
                           const std::filesystem::path& textures) {
     DrawScene out;
+    std::size_t first = model.size();
     for (std::size_t c = 0; c < model.cloths.size(); ++c) {
         ClothAppearance appearance;
         if (!scene.look.cloth.empty()) {
@@ -150,17 +168,15 @@ DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Pla
             appearance.period = static_cast<float>(look.scale);
             appearance.texture = look.texture;
         }
-        out.cloths.push_back(mesh_of(model.cloths[c], appearance));
+        const int level = display_level(scene.look, model.cloths[c]);
+        out.cloths.push_back(mesh_of(model.cloths[c], appearance, level, first));
+        if (level > 0) first += FineGrid(model.cloths[c], level).size();
         if (!appearance.texture.empty() && !textures.empty())
             out.cloths.back().texture = read_png(textures / appearance.texture);
     }
-    // Stretch springs are stored cloth by cloth, so each cloth's edges are a run of them.
-    const auto edges = drawn_edges(model);
-    for (const auto& edge : edges) {
-        std::size_t c = 0;
-        while (edge[0] >= model.cloths[c].first + model.cloths[c].count()) ++c;
-        out.cloths[c].edges.push_back(edge);
-    }
+    out.edges = drawn_edges(model, scene.look.show);
+    out.transparent = scene.look.transparent;
+    out.spacing = spacing_of(model);
     for (const Solid& solid : scene.solids) {
         if (is_ground(solid)) continue;
         SolidMesh mesh;
@@ -180,41 +196,117 @@ DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Pla
     return out;
 }
 
-std::vector<std::array<std::uint32_t, 2>> drawn_edges(const ClothModel& model) {
-    std::vector<std::array<std::uint32_t, 2>> edges(model.springs.stretch_count);
+std::vector<std::array<std::uint32_t, 2>> drawn_edges(const ClothModel& model, Show show) {
+    std::vector<std::array<std::uint32_t, 2>> edges(drawn_springs(model, show));
     for (std::size_t s = 0; s < edges.size(); ++s) edges[s] = {model.springs.i[s], model.springs.j[s]};
     return edges;
 }
 
+namespace {
+
+// Display vertices between particles follow the particles.
+void add_fine_grids(const Scene& scene, const ClothModel& model, DrawFrame& out) {
+    std::size_t first = model.size();
+    for (const ClothPatch& patch : model.cloths) {
+        const int level = display_level(scene.look, patch);
+        if (level == 0) continue;
+        FineGrid grid(patch, level);
+        out.positions.resize(first + grid.size());
+        out.particle_colors.resize(first + grid.size());
+        grid.points(std::span(out.positions).first(model.size()), std::span(out.positions).subspan(first));
+        grid.colors(std::span(out.particle_colors).first(model.size()),
+                    std::span(out.particle_colors).subspan(first));
+        first += grid.size();
+    }
+}
+
+void pose_solids(const Scene& scene, double t, DrawFrame& out) {
+    out.solid_poses.clear();
+    for (const Solid& solid : scene.solids)
+        if (!is_ground(solid)) out.solid_poses.push_back(solid_pose(solid, t).cast<float>());
+}
+
+// Where a particle was at share s of the way from one frame to the next: Hermite's cubic through both places
+// with both velocities, h apart.
+Vec3 on_the_way(const ClothState& a, const ClothState& b, std::size_t p, double s, double h) {
+    const double s2 = s * s, s3 = s2 * s;
+    return (2 * s3 - 3 * s2 + 1) * a.x[p] + (s3 - 2 * s2 + s) * h * a.v[p] + (3 * s2 - 2 * s3) * b.x[p] +
+           (s3 - s2) * h * b.v[p];
+}
+
+}  // namespace
+
+double frame_time(const Scene& scene, int frame) {
+    return static_cast<double>(frame) / scene.clip.fps;
+}
+
 void make_draw_frame(const Scene& scene, const ClothModel& model, const FrameRecord& record,
-                     const std::vector<Rgb>& particle_colors, DrawFrame& out, std::size_t camera) {
-    constexpr std::uint8_t faint = 110;
+                     const std::vector<Rgb>& components, DrawFrame& out, std::size_t camera) {
     out.positions.resize(model.size());
     for (std::size_t p = 0; p < model.size(); ++p) out.positions[p] = record.state.x[p].cast<float>();
-    out.particle_colors = particle_colors;
-    out.edge_strength.resize(model.springs.stretch_count);
-    for (std::size_t s = 0; s < out.edge_strength.size(); ++s) {
-        out.edge_strength[s] = record.springs[s] == SpringState::implicit ? 255 : faint;
-    }
-    out.solid_poses.clear();
-    for (const Solid& solid : scene.solids) {
-        if (!is_ground(solid)) out.solid_poses.push_back(solid_pose(solid, record.state.t).cast<float>());
-    }
-    out.camera = camera_at(scene, scene.cameras[camera], record.state.t);
+    color_wires(scene.look, model, record, components, out);
+    add_fine_grids(scene, model, out);
+    pose_solids(scene, record.state.t, out);
+    out.camera = camera_at(scene, scene.cameras[camera], frame_time(scene, record.frame));
 }
+
+std::vector<double> exposure_times(const Scene& scene, int frame) {
+    const int count = frame == 0 ? 1 : scene.look.motion_blur;
+    if (count == 1) return {frame_time(scene, frame)};
+    std::vector<double> times;
+    for (int k = 0; k < count; ++k)
+        times.push_back(frame_time(scene, frame) -
+                        scene.look.shutter / scene.clip.fps * (1 - (k + 0.5) / count));
+    return times;
+}
+
+void make_exposures(const Scene& scene, const ClothModel& model, const FrameRecord& record,
+                    const ClothState* previous, const std::vector<Rgb>& components,
+                    std::vector<DrawFrame>& out) {
+    const std::vector<double> times = exposure_times(scene, previous ? record.frame : 0);
+    out.resize(times.size());
+    if (times.size() == 1) return make_draw_frame(scene, model, record, components, out[0]);
+    // A frame that stands still, as on a turntable, was nowhere else.
+    const double h = record.state.t - previous->t, pace = h > 0 ? 1 : 0;
+    for (std::size_t e = 0; e < times.size(); ++e) {
+        DrawFrame& frame = out[e];
+        const double before = pace * (frame_time(scene, record.frame) - times[e]);
+        const double s = h > 0 ? 1 - before / h : 1;
+        frame.positions.resize(model.size());
+        for (std::size_t p = 0; p < model.size(); ++p)
+            frame.positions[p] = on_the_way(*previous, record.state, p, s, h).cast<float>();
+        color_wires(scene.look, model, record, components, frame);
+        add_fine_grids(scene, model, frame);
+        pose_solids(scene, record.state.t - before, frame);
+    }
+}
+
+namespace {
+
+// Catmull–Rom through unevenly spaced keys, at rest in the first and the last one.
+template <class Value>
+Vec3 through_keys(const std::vector<Camera::Key>& keys, double t, Value&& value) {
+    const std::size_t last = keys.size() - 1;
+    const auto slope = [&](std::size_t k) -> Vec3 {
+        if (k == 0 || k == last) return Vec3::Zero();
+        return (value(keys[k + 1]) - value(keys[k - 1])) / (keys[k + 1].time - keys[k - 1].time);
+    };
+    if (t <= keys.front().time) return value(keys.front());
+    if (t >= keys.back().time) return value(keys.back());
+    std::size_t k = 0;
+    while (keys[k + 1].time <= t) ++k;
+    const double h = keys[k + 1].time - keys[k].time, s = (t - keys[k].time) / h, s2 = s * s, s3 = s2 * s;
+    return (2 * s3 - 3 * s2 + 1) * value(keys[k]) + (s3 - 2 * s2 + s) * h * slope(k) +
+           (3 * s2 - 2 * s3) * value(keys[k + 1]) + (s3 - s2) * h * slope(k + 1);
+}
+
+}  // namespace
 
 CameraView camera_at(const Scene& scene, const Camera& camera, double t) {
     Vec3 position = camera.position, target = camera.target;
-    const auto& keys = camera.keyframes;
-    if (!keys.empty()) {
-        const auto next = std::upper_bound(keys.begin(), keys.end(), t,
-                                           [](double time, const auto& key) { return time < key.time; });
-        const auto& b = next == keys.end() ? keys.back() : *next;
-        const auto& a = next == keys.begin() ? keys.front() : *std::prev(next);
-        const double s = b.time > a.time ? std::clamp((t - a.time) / (b.time - a.time), 0.0, 1.0) : 0.0;
-        const double ease = s * s * (3 - 2 * s);
-        position = a.position + ease * (b.position - a.position);
-        target = a.target + ease * (b.target - a.target);
+    if (!camera.keyframes.empty()) {
+        position = through_keys(camera.keyframes, t, [](const Camera::Key& key) { return key.position; });
+        target = through_keys(camera.keyframes, t, [](const Camera::Key& key) { return key.target; });
     }
     if (camera.orbit != 0) {
         const double angle = camera.orbit * std::numbers::pi / 180.0 * t / scene.clip.duration;

@@ -4,6 +4,7 @@ namespace unravel {
 
 namespace {
 
+constexpr std::string_view shows[] = {"components", "splitting", "strain", "velocity", "contact"};
 constexpr std::string_view weaves[] = {"plain", "twill", "checks", "stripes", "solid"};
 
 }  // namespace
@@ -61,6 +62,17 @@ void describe(Fields& f, Look& look) {
     f.flag({"show_ground", "draw a ground"}, look.show_ground);
     f.optional_number({"ground_height", "m; default: under the lowest plane or under everything"},
                       look.ground_height, position_bounds);
+    f.choice({"show", "what the colours of the component view tell"}, look.show, shows);
+    f.number({"show_max", "where the scale ends: strain (1) or velocity (m/s); 0: 0.05, 3"}, look.show_max,
+             {0, 1e6});
+    f.flag({"legend", "tell in the picture what its colours mean"}, look.legend);
+    f.flag({"transparent", "no ground and no background: frames with an alpha channel"}, look.transparent);
+    f.integer(
+        {"subdivide", "times that each cell is drawn as four smooth ones; -1: as a coarse grid needs it"},
+        look.subdivide, -1, 3);
+    f.integer({"motion_blur", "sub-frames that a picture is the mean of; 1: none"}, look.motion_blur, 1, 64);
+    f.number({"shutter", "share of the time between frames that the shutter is open"}, look.shutter,
+             {0, 1, true});
 }
 
 void describe(Fields& f, ClothLook& cloth) {

@@ -215,6 +215,9 @@ struct ClothLook {
     std::string texture;  ///< PNG file beside the scene; empty: the weave
 };
 
+/// What the colours of the component view tell.
+enum class Show { components, splitting, strain, velocity, contact };
+
 struct Look {
     std::vector<ClothLook> cloth;  ///< one per cloth; the last serves the rest
     std::string background = "#d8dee6";
@@ -222,6 +225,13 @@ struct Look {
     std::string solid = "#c9b79c";
     bool show_ground = true;
     std::optional<double> ground_height;  ///< m; absent: under the lowest plane or a little under everything
+    Show show = Show::components;
+    double show_max = 0;       ///< where the scale of strain (1) or velocity [m/s] ends; 0: 0.05, 3
+    bool legend = false;       ///< tell in the picture what its colours mean
+    bool transparent = false;  ///< no ground, no background: frames with an alpha channel
+    int subdivide = -1;  ///< times that each cell is drawn as four smooth ones; −1: as a coarse grid needs it
+    int motion_blur = 1;   ///< sub-frames that a picture is the mean of; 1: none
+    double shutter = 0.5;  ///< share of the time between frames that the shutter is open before each
 };
 
 /// The whole scene. Gravity is present unless the scene says `gravity = [0, 0, 0]`.

@@ -16,6 +16,7 @@ struct Sheet {
     explicit Sheet(int n, float phase = 0) {
         const float radius = 0.3f, height = 0.42f, cover = radius + 0.004f;
         ClothMesh mesh;
+        scene.spacing = 1.f / static_cast<float>(n - 1);
         for (int v = 0; v < n; ++v)
             for (int u = 0; u < n; ++u) {
                 mesh.particle.push_back(v * n + u);
@@ -24,8 +25,8 @@ struct Sheet {
         const auto at = [n](int u, int v) { return static_cast<std::uint32_t>(v * n + u); };
         for (int v = 0; v < n; ++v)
             for (int u = 0; u < n; ++u) {
-                if (u + 1 < n) mesh.edges.push_back({at(u, v), at(u + 1, v)});
-                if (v + 1 < n) mesh.edges.push_back({at(u, v), at(u, v + 1)});
+                if (u + 1 < n) scene.edges.push_back({at(u, v), at(u + 1, v)});
+                if (v + 1 < n) scene.edges.push_back({at(u, v), at(u, v + 1)});
                 if (u + 1 < n && v + 1 < n) {
                     mesh.triangles.push_back({at(u, v), at(u, v + 1), at(u + 1, v)});
                     mesh.triangles.push_back({at(u + 1, v), at(u, v + 1), at(u + 1, v + 1)});

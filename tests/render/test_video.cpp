@@ -192,6 +192,28 @@ TEST_CASE("mkv_is_lossless_with_each_of_its_encoders") {
     }
 }
 
+TEST_CASE("mkv_keeps_transparency_where_asked_and_nothing_else_claims_to") {
+    const TemporaryFolder folder;
+    VideoSettings settings = small_settings();
+    settings.alpha = true;
+    Image image = numbered_image(5);
+    for (std::size_t k = 3; k < image.pixels.size(); k += 4)
+        image.pixels[k] = static_cast<std::uint8_t>(k / 4);
+    {
+        VideoWriter video(folder / "clip.mkv", settings);
+        video.add(image);
+        video.finish();
+    }
+    int frames = 0;
+    read_video(folder / "clip.mkv", [&](const Image& read, double) {
+        ++frames;
+        CHECK(read.pixels == image.pixels);
+    });
+    CHECK(frames == 1);
+    for (const char* name : {"a.mp4", "a.webm", "a.gif"})
+        CHECK_THROWS_AS(VideoWriter(folder / name, settings), VideoError);
+}
+
 TEST_CASE("gif_shows_few_colours_exactly_and_gradients_closely") {
     const TemporaryFolder folder;
     Image gradient = plain_image({0, 0, 0});

@@ -49,22 +49,22 @@ Json frame_json(const PageFrame& frame) {
 
 // Which pictures go into the page. Too many of them: none where the folder has them as files, else of every
 // k-th frame.
-Json inlined(const Previews& previews, DrawStyle style, bool on_disk) {
+Json inlined(const Previews& previews, const std::string& view, bool on_disk) {
     Json json = Json::object();
     if (!previews.within_budget() && on_disk) return json;
     const std::size_t every = previews.bytes() / picture_budget + 1;
     std::size_t k = 0;
-    for (const auto& [number, text] : previews.of(style)) {
+    for (const auto& [number, text] : previews.of(view)) {
         if (k++ % every == 0) json[std::to_string(number)] = text;
     }
     return json;
 }
 
-std::vector<int> pictures_on_disk(const RunFolder& folder, DrawStyle style,
+std::vector<int> pictures_on_disk(const RunFolder& folder, const std::string& view,
                                   const std::vector<PageFrame>& frames) {
     std::vector<int> numbers;
     for (const PageFrame& frame : frames) {
-        if (std::filesystem::exists(folder.picture(style, frame.number))) numbers.push_back(frame.number);
+        if (std::filesystem::exists(folder.picture(view, frame.number))) numbers.push_back(frame.number);
     }
     return numbers;
 }
@@ -102,8 +102,15 @@ PageFacts page_facts(const Json& run) {
 
 Previews previews_of(const Scene& scene, const ClipOptions& options) {
     const int frames = std::max(0, options.last - options.first + 1);
-    return Previews(scene.clip.size[0], scene.clip.size[1], frames * static_cast<int>(options.styles.size()),
-                    picture_budget);
+    return Previews(scene.clip.size[0], scene.clip.size[1],
+                    frames * static_cast<int>(std::ssize(page_layouts)), picture_budget);
+}
+
+std::function<void(const ClipView&, int, const Image&)> take_previews(Previews& previews) {
+    return [&previews](const ClipView& view, int frame, const Image& picture) {
+        for (const Layout layout : page_layouts)
+            if (view.name == layout_name(layout)) previews.add(view.name, frame, picture);
+    };
 }
 
 std::string report_page(const Scene& scene, const ClothModel& model, const RunFolder& folder,
@@ -111,17 +118,18 @@ std::string report_page(const Scene& scene, const ClothModel& model, const RunFo
                         const Previews& previews, const PageFacts& facts) {
     Json data, pictures;
     data["views"] = Json::array();
-    for (const DrawStyle style : {DrawStyle::textured, DrawStyle::components}) {
-        const std::vector<int> files = pictures_on_disk(folder, style, frames);
-        Json inside = inlined(previews, style, !files.empty());
+    for (const Layout layout : page_layouts) {
+        const std::string name = layout_name(layout);
+        const std::vector<int> files = pictures_on_disk(folder, name, frames);
+        Json inside = inlined(previews, name, !files.empty());
         if (files.empty() && inside.empty()) continue;
-        Json view{{"name", style_name(style)}};
+        Json view{{"name", name}};
         if (!files.empty()) {
-            view["files"] = fmt::format("frames/{}_", style_name(style));
+            view["files"] = fmt::format("frames/{}_", name);
             view["numbers"] = files;
         }
         data["views"].push_back(view);
-        pictures[style_name(style)] = std::move(inside);
+        pictures[name] = std::move(inside);
     }
     data["size"] = scene.clip.size;
     data["fps"] = scene.clip.fps;

@@ -56,8 +56,13 @@ PageFacts page_facts(const nlohmann::ordered_json& run_json);
 /// Bytes that the pictures within a page may take.
 inline constexpr std::size_t picture_budget = std::size_t{24} << 20;
 
-/// Previews for all pictures that these options will draw.
+/// Views that the page shows, both by the scene's first camera.
+inline constexpr Layout page_layouts[] = {Layout::textured, Layout::components};
+
+/// Previews for the pictures that a page of these options will show.
 Previews previews_of(const Scene& scene, const ClipOptions& options);
+/// Takes the pictures of a clip that are the page's views.
+std::function<void(const ClipView&, int, const Image&)> take_previews(Previews& previews);
 
 /// The whole of report.html: one file that needs no other and no network. Pictures that do not fit the budget
 /// are linked where the folder has them. `reports` are all steps of the run, with their times.

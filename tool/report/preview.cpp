@@ -28,6 +28,17 @@ const std::array<float, 256>& linear_light() {
     return table;
 }
 
+// sRGB bytes of linear light in steps of 1/4095: within one of the exact byte.
+const std::array<std::uint8_t, 4096>& encoded_light() {
+    static const std::array<std::uint8_t, 4096> table = [] {
+        std::array<std::uint8_t, 4096> t{};
+        for (std::size_t k = 0; k < t.size(); ++k)
+            t[k] = static_cast<std::uint8_t>(std::lround(255 * linear_to_srgb(static_cast<float>(k) / 4095)));
+        return t;
+    }();
+    return table;
+}
+
 struct WebpDeleter {
     void operator()(std::uint8_t* memory) const { WebPFree(memory); }
 };
@@ -42,6 +53,7 @@ Image shrink(const Image& image, int width) {
         std::max(1, static_cast<int>(std::lround(static_cast<double>(image.height) * width / image.width)));
     out.pixels.resize(static_cast<std::size_t>(out.width) * out.height * 4);
     const auto& light = linear_light();
+    const auto& encoded = encoded_light();
     for (int y = 0; y < out.height; ++y) {
         const int top = y * image.height / out.height;
         const int bottom = std::max(top + 1, (y + 1) * image.height / out.height);
@@ -56,8 +68,7 @@ Image shrink(const Image& image, int width) {
             }
             const float count = static_cast<float>((bottom - top) * (right - left));
             for (int c = 0; c < 3; ++c)
-                out.at(x, y)[c] =
-                    static_cast<std::uint8_t>(std::lround(255 * linear_to_srgb(sum[c] / count)));
+                out.at(x, y)[c] = encoded[static_cast<std::size_t>(4095 * sum[c] / count + 0.5f)];
             out.at(x, y)[3] = 255;
         }
     }
@@ -95,7 +106,7 @@ Previews::Previews(int width, int height, int pictures, std::size_t budget)
     width_ = std::min(std::clamp(static_cast<int>(std::sqrt(pixels * shape)), narrowest, widest), width);
 }
 
-void Previews::add(DrawStyle style, int frame, const Image& image) {
+void Previews::add(const std::string& view, int frame, const Image& image) {
     const Image small = shrink(image, width_);
     std::string text = base64(encode_webp(small));
     // The size was chosen for pictures as they usually are; a busier one pays in quality, not in the budget.
@@ -105,11 +116,13 @@ void Previews::add(DrawStyle style, int frame, const Image& image) {
     }
     const std::lock_guard lock(mutex_);
     bytes_ += text.size();
-    (style == DrawStyle::textured ? textured_ : components_).insert_or_assign(frame, std::move(text));
+    pictures_[view].insert_or_assign(frame, std::move(text));
 }
 
-const std::map<int, std::string>& Previews::of(DrawStyle style) const {
-    return style == DrawStyle::textured ? textured_ : components_;
+const std::map<int, std::string>& Previews::of(const std::string& view) const {
+    static const std::map<int, std::string> none;
+    const auto found = pictures_.find(view);
+    return found == pictures_.end() ? none : found->second;
 }
 
 }  // namespace unravel

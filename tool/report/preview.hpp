@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "render/image.hpp"
-#include "render/renderer.hpp"
 
 namespace unravel {
 
@@ -29,10 +28,10 @@ public:
     Previews(int width, int height, int pictures, std::size_t budget);
 
     /// May be called from several threads.
-    void add(DrawStyle style, int frame, const Image& image);
+    void add(const std::string& view, int frame, const Image& image);
 
     /// By frame; as base64 WebP.
-    const std::map<int, std::string>& of(DrawStyle style) const;
+    const std::map<int, std::string>& of(const std::string& view) const;
     std::size_t bytes() const { return bytes_; }
     bool within_budget() const { return bytes_ <= budget_; }
     int width() const { return width_; }
@@ -41,7 +40,7 @@ private:
     int width_;
     std::size_t budget_, share_, bytes_ = 0;
     std::mutex mutex_;
-    std::map<int, std::string> textured_, components_;
+    std::map<std::string, std::map<int, std::string>> pictures_;
 };
 
 }  // namespace unravel

@@ -57,7 +57,7 @@ TEST_CASE("600 frames of two busy views stay within the page's budget", "[report
     CHECK(all.width() >= 320);
     const Image image = busy_picture(1280, 720);
     // All of them are alike, so one tells what 1200 take.
-    all.add(DrawStyle::components, 0, image);
+    all.add("components", 0, image);
     CHECK(1200 * all.bytes() <= budget);
 }
 
