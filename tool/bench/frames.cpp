@@ -4,14 +4,17 @@
 #include <sys/resource.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "render/palette.hpp"
 #include "render/png.hpp"
 #include "render/renderer.hpp"
+#include "sim/scene/load.hpp"
 #include "sim/simulate.hpp"
 #include "tool/clip.hpp"
 #include "tool/view.hpp"
@@ -183,6 +186,35 @@ std::string frame_bench_text(const FrameBench& bench) {
         fmt::format("bound {:.1f} (slowest stage, or all processors busy); together is {:.0f}% above it\n",
                     bench.bound(), 100 * (bench.together.wall / bench.bound() - 1));
     return text;
+}
+
+namespace {
+
+nlohmann::ordered_json stage_json(const FrameStage& stage) {
+    return {{"name", stage.name}, {"wall_ms", stage.wall}, {"cpu_ms", stage.cpu}};
+}
+
+}  // namespace
+
+int command_bench_frames(const Options& options) {
+    constexpr int frames = 40;
+    const std::filesystem::path file =
+        options.scene.empty() ? std::filesystem::path(UNRAVEL_SCENES) / "drape_sphere.toml" : options.scene;
+    Scene scene = load_scene(file, options.overrides);
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / fmt::format("unravel_bench_{}", getpid());
+    const FrameBench bench =
+        bench_frames(scene, frames, options.threads, parse_device_choice(options.device), folder);
+    if (!options.json) {
+        fmt::print("{}", frame_bench_text(bench));
+        return exit_done;
+    }
+    nlohmann::ordered_json json{{"renderer", bench.renderer}, {"encoder", bench.encoder},
+                                {"frames", bench.frames},     {"processors", bench.processors},
+                                {"bound_ms", bench.bound()},  {"together", stage_json(bench.together)}};
+    for (const FrameStage& stage : bench.stages) json["stages"].push_back(stage_json(stage));
+    fmt::print("{}\n", json.dump(2));
+    return exit_done;
 }
 
 }  // namespace unravel

@@ -6,6 +6,7 @@
 
 #include "render/gl_context.hpp"
 #include "sim/scene/scene.hpp"
+#include "tool/options.hpp"
 
 namespace unravel {
 
@@ -32,5 +33,9 @@ FrameBench bench_frames(const Scene& scene, int frames, int threads, const Devic
 
 /// The same as a table in text.
 std::string frame_bench_text(const FrameBench& bench);
+
+/// `unravel bench --frames [SCENE]`: prints the table of a scene, drape_sphere by default, or its numbers as
+/// JSON.
+int command_bench_frames(const Options& options);
 
 }  // namespace unravel
