@@ -16,6 +16,7 @@
 #include "render/renderer.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/simulate.hpp"
+#include "source_dir.hpp"
 #include "tool/clip.hpp"
 #include "tool/view.hpp"
 
