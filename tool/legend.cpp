@@ -17,7 +17,7 @@ namespace unravel {
 namespace {
 
 // In units of the text's size.
-constexpr double line_height = 1.5, padding = 0.8, swatch = 0.85, panel_width = 19, bar_height = 0.8;
+constexpr double line_height = 1.5, padding = 0.8, swatch = 0.85, panel_width = 23, bar_height = 0.8;
 constexpr Rgb panel{16, 18, 22}, ink{232, 234, 238}, quiet_ink{168, 172, 182};
 
 struct Row {
