@@ -12,6 +12,7 @@
 #include "sim/explicit_limit.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/step.hpp"
+#include "tool/bench/frames.hpp"
 #include "tool/options.hpp"
 #include "tool/render_options.hpp"
 #include "tool/version.hpp"
@@ -197,6 +198,16 @@ int main(int argc, char** argv) {
                         "small and short: shows that it works, not what it reaches");
     reproduce->add_option("-o", options.output, "folder of the report (default: output/reproduce)");
     reproduce->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
+        ->capture_default_str();
+    CLI::App* bench =
+        command("bench", "what pictures cost, each stage alone and all together", command_bench_frames);
+    bench->add_flag("--frames", frames_bench, "simulation, drawing, PNG and mp4 of both views");
+    bench->add_option("scene", options.scene, "scene file (default: drape_sphere)");
+    bench->add_option("--set", options.overrides, "key=value: another value for a key of the scene")
+        ->allow_extra_args(false);
+    bench->add_option("--threads", options.threads, "threads of the simulation (default: one per processor)")
+        ->check(CLI::Range(1, 1024));
+    bench->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
         ->capture_default_str();
     CLI::App* schema = command("schema", "what files hold, for editors and programs", command_schema);
     schema->add_option("what", options.what, "scene or run (JSON schemas), stats (columns of stats.csv)")
