@@ -199,6 +199,7 @@ int main(int argc, char** argv) {
     reproduce->add_option("-o", options.output, "folder of the report (default: output/reproduce)");
     reproduce->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
         ->capture_default_str();
+    bool frames_bench = true;  // the only one so far
     CLI::App* bench =
         command("bench", "what pictures cost, each stage alone and all together", command_bench_frames);
     bench->add_flag("--frames", frames_bench, "simulation, drawing, PNG and mp4 of both views");
