@@ -19,6 +19,12 @@ constexpr const char* check_driver =
 constexpr const char* check_access =
     "give this user access to /dev/dri/renderD* (usermod -aG render,video USER; in a container pass --device "
     "/dev/dri), or choose --device software";
+constexpr const char* reinstall_software =
+    "apt-get install --reinstall libgl1-mesa-dri libegl-mesa0: Mesa's software rasteriser does not start";
+constexpr const char* reinstall_vendor =
+    "apt-get install --reinstall libegl1 libegl-mesa0: /usr/share/glvnd/egl_vendor.d is to hold a file such "
+    "as "
+    "50_mesa.json, and __EGL_VENDOR_LIBRARY_FILENAMES is not to be set";
 constexpr const char* old_gl = "GL 3.3 core is needed: update the driver or choose --device software";
 
 /// Whether GL_RENDERER names a rasteriser that runs on the CPU.
@@ -67,8 +73,8 @@ std::vector<Route> list_routes(const Egl& egl, std::vector<RendererAttempt>& att
     std::vector<Route> routes;
     if (!egl.GetPlatformDisplayEXT || !egl.has(EGL_NO_DISPLAY, "EGL_EXT_platform_base")) {
         attempts.push_back({.route = "EGL",
-                            .reason = "this libEGL lacks EGL_EXT_platform_base",
-                            .fix = fmt::format("update libEGL: {}", install_egl)});
+                            .reason = "libEGL finds no vendor's library (no EGL_EXT_platform_base)",
+                            .fix = reinstall_vendor});
         return routes;
     }
     const bool enumerates = egl.has(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") ||
@@ -111,7 +117,10 @@ std::unique_ptr<CurrentContext> reach(const Egl& egl, const Route& route, Render
     EGLDisplay display = egl.GetPlatformDisplayEXT(route.platform, route.native, nullptr);
     if (display == EGL_NO_DISPLAY) return fail("eglGetPlatformDisplayEXT", check_driver);
     EGLint major = 0, minor = 0;
-    if (!egl.Initialize(display, &major, &minor)) return fail("eglInitialize", check_access);
+    // What needs no device has no access to lack: its driver is missing or damaged.
+    const bool software = route.device < 0 || route.name.find("(software)") != route.name.npos;
+    if (!egl.Initialize(display, &major, &minor))
+        return fail("eglInitialize", software ? reinstall_software : check_access);
     if (!egl.BindAPI(EGL_OPENGL_API)) return fail("eglBindAPI(EGL_OPENGL_API)", check_driver);
     if (!egl.has(display, "EGL_KHR_surfaceless_context")) {
         attempt.reason = "the display lacks EGL_KHR_surfaceless_context";
