@@ -15,6 +15,7 @@ constexpr int newton_halvings = 4;
 // Right-hand side of the stage: friction, M (ṽ − v*) and h_f f*, gathered per particle in a fixed order.
 void add_forces(const ClothModel& model, StepWorkspace& ws) {
     const Stage& stage = ws.stage;
+    const bool rubbed = !ws.friction.empty();
     ws.impulse.resize(model.size());
     parallel_each(model.size(), [&](std::size_t p) {
         Vec3 f = model.mass[p] * model.gravity;
@@ -27,7 +28,8 @@ void add_forces(const ClothModel& model, StepWorkspace& ws) {
         gather(model.spring_adjacency, ws.extension.force);
         if (model.self_collision) gather(ws.self.adjacency, ws.self.forces.force);
         gather(model.bend_adjacency, ws.bend);
-        ws.impulse[p] = ws.friction[p] + stage.h_force * f + model.mass[p] * (stage.v[p] - stage.v_at[p]);
+        const Vec3 friction = rubbed ? ws.friction[p] : Vec3(Vec3::Zero());
+        ws.impulse[p] = friction + stage.h_force * f + model.mass[p] * (stage.v[p] - stage.v_at[p]);
     });
     if (model.wind) add_air(model.air, ws.air, stage.h_force, ws.impulse);
 }
@@ -162,7 +164,8 @@ void solve_stage(const ClothModel& model, const StepOptions& options, std::span<
         count_solves(ws.solves, report);
         timer.lap(report.times.solve);
     }
-    if (options.compare_whole) compare_whole(model, options, families, load, guess, ws, report);
+    if (!options.compare_whole) return;
+    compare_whole(model, options, families, load, guess, ws, report);
     timer.lap(report.times.compare);
 }
 
