@@ -23,6 +23,8 @@ constexpr double pull_share = 1e-3;
 constexpr std::uint8_t slip_steps = 3;
 // Two contacts pinch where their normals' cosine is below this.
 constexpr double pinch_cosine = -0.5;
+// A gap below this is rounding [m]: what rests then rests to the last bit, and asks for nothing.
+constexpr double no_gap = 1e-12;
 // Contacts this parallel are one direction.
 constexpr double parallel_cosine = 0.999;
 
@@ -32,8 +34,10 @@ bool touches_solid(const Solid& solid, const Pose& now, const Pose& next, const 
     Vec3 gradient;
     const double distance = signed_distance(solid, local, &gradient);
     touch.gap = distance - solid.offset;
+    if (std::abs(touch.gap) < no_gap) touch.gap = 0;
     touch.normal = now.linear() * gradient;
-    touch.velocity = (next * local - view.x[p]) / view.step;
+    touch.velocity.setZero();
+    if (!solid.motion.empty()) touch.velocity = (next * local - view.x[p]) / view.step;
     touch.pinched = false;
     // Gravity is foreseen, so that what is laid on a slope is caught before it has begun to slide.
     const Vec3 coming = view.v[p] + view.step * view.gravity - touch.velocity;
