@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/scene/presets.hpp"
 #include "sim/self_collision.hpp"
 #include "tests/sim/scenes.hpp"
 
@@ -38,12 +39,12 @@ double slide(double angle, Friction friction, double seconds) {
     return moved.dot(Vec3(std::cos(angle * degree), -std::sin(angle * degree), 0));
 }
 
-// How far the middle of a sheet held at two edges sags.
-double sag(int n) {
+// How far a square metre of a material, held at two edges, sags on the average.
+double sag(int n, const MaterialPreset& preset) {
     Scene scene;
-    Cloth cloth = sheet(n, 1.0);
-    cloth.material.stretch = {300, 300};
-    cloth.material.shear = 30;
+    Cloth cloth = sheet(n, 0);
+    cloth.material = preset.material;
+    cloth.density = preset.density;
     for (const char* edge : {"u0", "u1"}) {
         Pin pin;
         pin.target = PinTarget::edge;
@@ -52,12 +53,16 @@ double sag(int n) {
     }
     scene.cloths.push_back(cloth);
     scene.wind = Wind{};
-    scene.wind->drag = 200;  // brings it to rest soon
-    scene.solver.tolerance = 1e-5;
+    scene.wind->drag = 100;  // brings it to rest soon
+    scene.solver.integrator = Integrator::implicit;
+    scene.solver.tolerance = 1e-4;
     Simulation simulation = start_simulation(scene);
-    for (int k = 0; k < 400; ++k)
-        step(simulation.model, simulation.options, 0.01, simulation.state, simulation.ws);
-    return 1.0 - simulation.state.x[simulation.model.cloths[0].at(n / 2, n / 2)].y();
+    for (int k = 0; k < 80; ++k)
+        step(simulation.model, simulation.options, 0.02, simulation.state, simulation.ws);
+    double depth = 0;
+    for (std::size_t p = 0; p < simulation.model.size(); ++p)
+        depth -= simulation.model.mass[p] * simulation.state.x[p].y() / preset.density;
+    return depth;
 }
 
 }  // namespace
@@ -109,10 +114,21 @@ TEST_CASE("still air only takes energy, however dense it is") {
     CHECK(energy < 0.05 * start);
 }
 
-TEST_CASE("refining a cloth refines the same cloth: equal sag within 2 percent") {
-    const double coarse = sag(25), fine = sag(51);
-    REQUIRE(coarse > 0.05);
-    CHECK(coarse == Approx(fine).epsilon(0.02));
+TEST_CASE("refining a cloth refines the same cloth: presets sag equally within 2 percent") {
+    for (const MaterialPreset& preset : material_presets()) {
+        INFO(preset.name);
+        const double coarse = sag(25, preset), fine = sag(50, preset);
+        INFO(coarse << ", " << fine << " m");
+        CHECK(coarse > 0.01);
+        CHECK(coarse == Approx(fine).epsilon(0.02));
+    }
+}
+
+TEST_CASE("presets sag equally within 2 percent from 25 to 100 particles along each side", "[.long]") {
+    for (const MaterialPreset& preset : material_presets()) {
+        INFO(preset.name);
+        CHECK(sag(25, preset) == Approx(sag(100, preset)).epsilon(0.02));
+    }
 }
 
 TEST_CASE("masses add up to density times area, whatever the grid") {
