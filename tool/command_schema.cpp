@@ -1,9 +1,10 @@
-// unravel schema scene|run|stats: what the tool's files hold, for editors and programs.
+// unravel schema scene|keys|run|stats: what the tool's files hold, for editors, programs and readers.
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
+#include "sim/scene/reference.hpp"
 #include "sim/scene/schema.hpp"
 #include "sim/stats.hpp"
 #include "tool/options.hpp"
@@ -27,6 +28,8 @@ nlohmann::ordered_json stats_list() {
 int command_schema(const Options& options) {
     if (options.what == "scene") {
         fmt::print("{}\n", scene_schema().dump(2));
+    } else if (options.what == "keys") {
+        fmt::print("{}", scene_reference());
     } else if (options.what == "run") {
         fmt::print("{}", page_file("run.schema.json"));
     } else if (options.json) {

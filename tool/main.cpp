@@ -211,8 +211,11 @@ int main(int argc, char** argv) {
     bench->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
         ->capture_default_str();
     CLI::App* schema = command("schema", "what files hold, for editors and programs", command_schema);
-    schema->add_option("what", options.what, "scene or run (JSON schemas), stats (columns of stats.csv)")
-        ->check(CLI::IsMember({"scene", "run", "stats"}))
+    schema
+        ->add_option(
+            "what", options.what,
+            "scene or run (JSON schemas), keys (the scene's, as Markdown), stats (columns of stats.csv)")
+        ->check(CLI::IsMember({"scene", "keys", "run", "stats"}))
         ->required();
     CLI::App* check = takes(command("check", "what is wrong with a scene, or what would run", command_check),
                             "SCENE", "scene file");
