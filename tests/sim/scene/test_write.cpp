@@ -100,7 +100,7 @@ TEST_CASE("the complete scene's values arrive where they belong", "[scene]") {
     CHECK(cloth.regions[0].material->shear == 99.5);
     CHECK(cloth.regions[0].material->bend == 1e-3);
     CHECK(cloth.regions[1].material->preset == "silk");
-    CHECK(cloth.regions[1].density == 0.08);
+    CHECK(cloth.regions[1].density == 0.082);
     REQUIRE(cloth.pins.size() == 6);
     CHECK(cloth.pins[1].name == "u1v0");
     CHECK(cloth.pins[1].release == 0.75);
