@@ -89,6 +89,8 @@ int simulate_clip(const Options& options, bool pictures) {
     // A run that can't go on ends its clip as one that was stopped does: what it has is kept.
     std::optional<SimulationError> failure;
     const FrameSource next = [&]() -> std::optional<FrameRecord> {
+        // Nothing beyond the last frame asked for is computed.
+        if (static_cast<int>(recorder.frames().size()) > clip_options.last) return std::nullopt;
         try {
             std::optional<FrameRecord> record = source.next();
             if (record) recorder.see(*record);

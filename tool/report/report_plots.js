@@ -16,6 +16,7 @@ function plotList(series) {
     {title: 'Time per frame [ms]', stacked: true,
      columns: Object.fromEntries(stages.map((name) => [name, name.slice(3)]))},
     {title: 'Strain of stretch springs [%]', columns: {max_strain: 'greatest', p99_strain: '99th percentile'}},
+    {title: 'Lowest point [m]', columns: {lowest: 'of all particles'}},
     {title: 'Energy [J]', columns: {kinetic: 'kinetic', potential: 'potential'}},
   ];
   for (const plot of list) {
