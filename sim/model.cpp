@@ -68,41 +68,54 @@ void add_extension(ExtensionSprings& springs, std::uint32_t p, std::uint32_t q, 
     springs.damping.push_back(damping);
 }
 
-void add_stretch(const Grid& g, ExtensionSprings& springs) {
-    for (int j = 0; j < g.nv(); ++j) {
-        for (int i = 0; i < g.nu(); ++i) {
-            if (i < g.patch.cells_u()) {
-                const Material& m = material_at(g.cloth, g.uv(i + 0.5, j));
-                const double shape = g.width_v(j) / g.a;
-                add_extension(springs, g.patch.at(i, j), g.patch.at(i + 1, j), g.a, m.stretch[0] * shape,
-                              m.stretch_damping[0] * shape);
-            }
-            if (j < g.patch.cells_v()) {
-                const Material& m = material_at(g.cloth, g.uv(i, j + 0.5));
-                const double shape = g.width_u(i) / g.b;
-                add_extension(springs, g.patch.at(i, j), g.patch.at(i, j + 1), g.b, m.stretch[1] * shape,
-                              m.stretch_damping[1] * shape);
-            }
-        }
+// Adds a direction's springs, row by row: add(i, j, p, q) for each, p and q its ends as the grid has them.
+template <typename F>
+SpringRows add_rows(const Grid& g, std::size_t first, std::array<int, 2> count, std::array<int, 2> from,
+                    std::array<int, 2> to, const F& add) {
+    SpringRows rows;
+    rows.first = static_cast<std::uint32_t>(first);
+    if (count[0] <= 0 || count[1] <= 0) return rows;
+    for (int j = 0; j < count[1]; ++j) {
+        for (int i = 0; i < count[0]; ++i)
+            add(i, j, g.patch.at(i + from[0], j + from[1]), g.patch.at(i + to[0], j + to[1]));
     }
+    rows.per_row = static_cast<std::uint32_t>(count[0]);
+    rows.rows = static_cast<std::uint32_t>(count[1]);
+    for (const std::size_t axis : {0u, 1u}) {
+        rows.from[axis] = static_cast<std::uint32_t>(from[axis]);
+        rows.to[axis] = static_cast<std::uint32_t>(to[axis]);
+    }
+    return rows;
 }
 
-void add_shear(const Grid& g, ExtensionSprings& springs) {
+void add_stretch(const Grid& g, ExtensionSprings& springs, GridSprings& grid) {
+    const auto along = [&](int axis) {
+        return [&, axis](int i, int j, std::uint32_t p, std::uint32_t q) {
+            const Material& m = material_at(g.cloth, axis == 0 ? g.uv(i + 0.5, j) : g.uv(i, j + 0.5));
+            const double rest = axis == 0 ? g.a : g.b;
+            const double shape = (axis == 0 ? g.width_v(j) : g.width_u(i)) / rest;
+            const auto k = static_cast<std::size_t>(axis);
+            add_extension(springs, p, q, rest, m.stretch[k] * shape, m.stretch_damping[k] * shape);
+        };
+    };
+    grid.u = add_rows(g, springs.size(), {g.patch.cells_u(), g.nv()}, {0, 0}, {1, 0}, along(0));
+    grid.v = add_rows(g, springs.size(), {g.nu(), g.patch.cells_v()}, {0, 0}, {0, 1}, along(1));
+}
+
+void add_shear(const Grid& g, ExtensionSprings& springs, GridSprings& grid) {
     const double diagonal = std::hypot(g.a, g.b), shape = diagonal * diagonal / (g.a * g.b);
-    for (int j = 0; j < g.patch.cells_v(); ++j) {
-        for (int i = 0; i < g.patch.cells_u(); ++i) {
-            const Material& m = material_at(g.cloth, g.uv(i + 0.5, j + 0.5));
-            const double k = m.shear * shape, d = m.shear_damping * shape;
-            add_extension(springs, g.patch.at(i, j), g.patch.at(i + 1, j + 1), diagonal, k, d);
-            add_extension(springs, g.patch.at(i + 1, j), g.patch.at(i, j + 1), diagonal, k, d);
-        }
-    }
+    const std::array<int, 2> cells{g.patch.cells_u(), g.patch.cells_v()};
+    const auto across = [&](int i, int j, std::uint32_t p, std::uint32_t q) {
+        const Material& m = material_at(g.cloth, g.uv(i + 0.5, j + 0.5));
+        add_extension(springs, p, q, diagonal, m.shear * shape, m.shear_damping * shape);
+    };
+    grid.diagonal = add_rows(g, springs.size(), cells, {0, 0}, {1, 1}, across);
+    grid.anti = add_rows(g, springs.size(), cells, {1, 0}, {0, 1}, across);
 }
 
 void add_bend(BendSprings& bends, std::uint32_t p, std::uint32_t q, double rest, double width,
               const Material& m) {
     const double stiffness = m.bend * width / 3.0;
-    if (stiffness <= 0 || p == q) return;
     bends.i.push_back(std::min(p, q));
     bends.j.push_back(std::max(p, q));
     bends.rest.push_back(rest);
@@ -110,22 +123,28 @@ void add_bend(BendSprings& bends, std::uint32_t p, std::uint32_t q, double rest,
     bends.slope.push_back(12.0 * stiffness / (rest * rest * rest * m.buckling_strain));
 }
 
-void add_bends(const Grid& g, BendSprings& bends) {
+void add_bends(const Grid& g, BendSprings& bends, GridSprings& grid) {
+    const auto bends_at_all = [](const Region& region) {
+        return region.material && region.material->bend > 0;
+    };
+    if (g.cloth.material.bend <= 0 &&
+        std::none_of(g.cloth.regions.begin(), g.cloth.regions.end(), bends_at_all))
+        return;
     const double diagonal = std::hypot(g.a, g.b), across = g.a * g.b / diagonal;
     // A tube of three or four columns has its next-nearest neighbours already among its nearest.
-    const int last_u = g.patch.tube ? (g.nu() > 4 ? g.nu() : 0) : g.nu() - 2;
-    for (int j = 0; j < g.nv(); ++j) {
-        for (int i = 0; i < g.nu(); ++i) {
-            const Material& m = material_at(g.cloth, g.uv(i, j));
-            const bool along_u = i < last_u, along_v = j + 2 < g.nv();
-            if (along_u) add_bend(bends, g.patch.at(i, j), g.patch.at(i + 2, j), 2 * g.a, g.width_v(j), m);
-            if (along_v) add_bend(bends, g.patch.at(i, j), g.patch.at(i, j + 2), 2 * g.b, g.width_u(i), m);
-            if (along_u && along_v) {
-                add_bend(bends, g.patch.at(i, j), g.patch.at(i + 2, j + 2), 2 * diagonal, across, m);
-                add_bend(bends, g.patch.at(i + 2, j), g.patch.at(i, j + 2), 2 * diagonal, across, m);
-            }
-        }
-    }
+    const int last_u = g.patch.tube ? (g.nu() > 4 ? g.nu() : 0) : g.nu() - 2, last_v = g.nv() - 2;
+    const auto of = [&](double rest, const auto& width) {
+        return [&, rest, width](int i, int j, std::uint32_t p, std::uint32_t q) {
+            add_bend(bends, p, q, rest, width(i, j), material_at(g.cloth, g.uv(i, j)));
+        };
+    };
+    const auto wide = [&](int, int) { return across; };
+    grid.bend_u = add_rows(g, bends.size(), {last_u, g.nv()}, {0, 0}, {2, 0},
+                           of(2 * g.a, [&](int, int j) { return g.width_v(j); }));
+    grid.bend_v = add_rows(g, bends.size(), {g.nu(), last_v}, {0, 0}, {0, 2},
+                           of(2 * g.b, [&](int i, int) { return g.width_u(i); }));
+    grid.bend_diagonal = add_rows(g, bends.size(), {last_u, last_v}, {0, 0}, {2, 2}, of(2 * diagonal, wide));
+    grid.bend_anti = add_rows(g, bends.size(), {last_u, last_v}, {2, 0}, {0, 2}, of(2 * diagonal, wide));
 }
 
 void place(const Grid& g, Placement& placement) {
@@ -206,11 +225,16 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
                 model.mass.push_back(density_at(g.cloth, g.uv(i, j)) * g.width_u(i) * g.width_v(j));
             }
         }
-        add_stretch(g, model.springs);
+        GridSprings& springs = model.grids.emplace_back();
+        springs.particle = g.patch.first;
+        springs.nu = static_cast<std::uint32_t>(g.nu());
+        springs.nv = static_cast<std::uint32_t>(g.nv());
+        springs.tube = g.patch.tube;
+        add_stretch(g, model.springs, springs);
     }
     model.springs.stretch_count = model.springs.size();
-    for (const Grid& g : grids) add_shear(g, model.springs);
-    for (const Grid& g : grids) add_bends(g, model.bends);
+    for (std::size_t c = 0; c < grids.size(); ++c) add_shear(grids[c], model.springs, model.grids[c]);
+    for (std::size_t c = 0; c < grids.size(); ++c) add_bends(grids[c], model.bends, model.grids[c]);
     for (const Grid& g : grids) place(g, placement);
     for (const Grid& g : grids) add_pins(g, placement, model.pins);
     if (scene.wind) {

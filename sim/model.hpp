@@ -9,6 +9,7 @@
 #include "sim/forces/air.hpp"
 #include "sim/forces/bend.hpp"
 #include "sim/forces/extension.hpp"
+#include "sim/kernels/grid_springs.hpp"
 #include "sim/math.hpp"
 #include "sim/scene/scene.hpp"
 
@@ -51,6 +52,7 @@ struct ClothModel {
     Adjacency spring_adjacency;
     BendSprings bends;
     Adjacency bend_adjacency;
+    std::vector<GridSprings> grids;  ///< one per cloth that is a grid: its springs by direction
     std::vector<PinnedGroup> pins;
     Vec3 gravity{0, 0, 0};                        ///< m/s²
     std::vector<Solid> solids;                    ///< what the cloth meets; empty: no contact at all

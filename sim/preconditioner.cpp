@@ -45,6 +45,7 @@ void build_preconditioner(Preconditioner kind, const System& A, const Components
                           const Constraints& constraints, BlockPreconditioner& out) {
     out.inverse.resize(A.rows());
     parallel_each(components.start.back(), [&](std::size_t row) {
+        if (!solved_in(A, components, row)) return;
         out.inverse[row] = inverse_block(kind, A.diagonal[row], constraints.find(components.order[row]));
     });
 }

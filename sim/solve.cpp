@@ -13,6 +13,13 @@ bool is_swept(Preconditioner kind) {
     return kind == Preconditioner::ssor || kind == Preconditioner::ic0;
 }
 
+// What stands in for preconditioners that need a grid.
+Preconditioner on_rows(Preconditioner kind) {
+    const bool needs_grid = kind == Preconditioner::automatic || kind == Preconditioner::stencil_block ||
+                            kind == Preconditioner::multigrid;
+    return needs_grid ? Preconditioner::constrained_block : kind;
+}
+
 // The rows of one component and the vectors over them.
 struct Rows {
     const System& A;
@@ -127,8 +134,10 @@ ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
 }  // namespace
 
 void solve(const System& A, const Components& components, const Constraints& constraints,
-           std::span<const Vec3> guess, const SolveOptions& options, SolveWorkspace& ws,
+           std::span<const Vec3> guess, const SolveOptions& asked, SolveWorkspace& ws,
            std::vector<ComponentSolve>& out) {
+    SolveOptions options = asked;
+    options.preconditioner = on_rows(asked.preconditioner);
     const std::size_t n = A.rows();
     ws.x.resize(n);
     ws.r.resize(n);
@@ -169,13 +178,18 @@ void solve(const System& A, const Components& components, const Constraints& con
     };
     // Components of many chunks go first, so that the small ones fill the gaps that they leave.
     tbb::task_group large;
+    const auto ours = [&](std::size_t c) { return A.elsewhere.empty() || A.elsewhere[c] == 0; };
     for (std::size_t c = 0, ordinal = 0; c < components.count(); ++c) {
         if (components.size(c) <= chunk_size) continue;
+        if (!ours(c)) {
+            ++ordinal;
+            continue;
+        }
         double* const partials = ws.partials.data() + components.start[c] / chunk_size + ordinal++;
         large.run([&run, c, partials] { run(c, partials); });
     }
     tbb::parallel_for(std::size_t{0}, components.count(), [&](std::size_t c) {
-        if (components.size(c) <= chunk_size) run(c, nullptr);
+        if (components.size(c) <= chunk_size && ours(c)) run(c, nullptr);
     });
     large.wait();
 }

@@ -40,7 +40,8 @@ struct SolveWorkspace {
 /// Witkin 1998, Sec. 5.3) from x₀ = S y + (I − S) z (Ascher & Boxerman 2003), y = `guess`: each component is
 /// a task of its own on its own rows; a large one is cut into chunks of rows besides. Result in ws.x, in row
 /// order; rows of the fully constrained hold z. A component of one row is solved directly and counts as one
-/// iteration of one multiply.
+/// iteration of one multiply. Components that A leaves to others are passed over. Preconditioners that need a
+/// grid (automatic, stencil_block, multigrid) are the constrained block here.
 ///   guess   (particles)   [m/s]
 ///   out     (components)
 void solve(const System& A, const Components& components, const Constraints& constraints,

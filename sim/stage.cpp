@@ -50,8 +50,10 @@ void compare_whole(const ClothModel& model, const StepOptions& options,
     report.rvm_whole = report.rvm_whole.value_or(0);
     if (!ws.coupled) return;
     whole_cloth(model.size(), ws.whole);
-    assemble(families, load, ws.whole, ws.constraints, ws.stage.h, ws.whole_system);
-    solve(ws.whole_system, ws.whole, ws.constraints, guess, options.solve, ws.whole_solve, ws.whole_solves);
+    const StepSystem system{model.grids, families, load, ws.whole, ws.constraints, guess, ws.stage.h};
+    assemble_components(system, options.solve, ws.whole_grid_solves, ws.whole_system);
+    solve_components(system, options.solve, ws.whole_grid_solves, ws.whole_system, ws.whole_solve,
+                     ws.whole_solves);
     for (const ComponentSolve& s : ws.whole_solves) *report.rvm_whole += s.rvm;
     for (std::size_t p = 0; p < model.size(); ++p) {
         report.whole_difference = std::max(report.whole_difference, (ws.whole_solve.x[p] - ws.dv[p]).norm());
@@ -157,9 +159,11 @@ void solve_stage(const ClothModel& model, const StepOptions& options, std::span<
             whole_cloth(n, ws.components);
         }
         timer.lap(report.times.graph);
-        assemble(families, load, ws.components, ws.constraints, ws.stage.h, ws.system);
+        const StepSystem system{model.grids,    families, load,      ws.components,
+                                ws.constraints, guess,    ws.stage.h};
+        assemble_components(system, options.solve, ws.grid_solves, ws.system);
         timer.lap(report.times.assembly);
-        solve(ws.system, ws.components, ws.constraints, guess, options.solve, ws.solve, ws.solves);
+        solve_components(system, options.solve, ws.grid_solves, ws.system, ws.solve, ws.solves);
         parallel_each(n, [&](std::size_t row) { ws.dv[ws.components.order[row]] = ws.solve.x[row]; });
         count_solves(ws.solves, report);
         timer.lap(report.times.solve);

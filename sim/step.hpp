@@ -12,6 +12,7 @@
 #include "sim/report.hpp"
 #include "sim/self_collision.hpp"
 #include "sim/solve.hpp"
+#include "sim/solve_components.hpp"
 #include "sim/state.hpp"
 #include "sim/system.hpp"
 
@@ -50,6 +51,7 @@ struct StepWorkspace {
     Components components, whole;
     System system, whole_system;
     SolveWorkspace solve, whole_solve;
+    GridSolves grid_solves, whole_grid_solves;
     std::vector<ComponentSolve> solves, whole_solves;  ///< (components)
     std::vector<Vec3> dv;                              ///< (particles) m/s
     MeasureWorkspace measure;

@@ -23,7 +23,8 @@ Coupling coupling_of(const SpringFamily& family, std::uint32_t s, double h) {
 }  // namespace
 
 void assemble(std::span<const SpringFamily> families, const Load& load, const Components& components,
-              const Constraints& constraints, double h, System& out) {
+              const Constraints& constraints, double h, System& out,
+              std::span<const std::uint8_t> elsewhere) {
     const std::size_t n = load.mass.size();
     // In the undecomposed system the fully constrained have rows like any other; S keeps them from moving.
     const std::uint32_t solved = components.start.back();
@@ -31,6 +32,10 @@ void assemble(std::span<const SpringFamily> families, const Load& load, const Co
     out.start.resize(n + 1);
     out.diagonal.resize(n);
     out.b.resize(n);
+    out.elsewhere.assign(elsewhere.begin(), elsewhere.end());
+    const auto left_out = [&](std::size_t row, std::uint32_t p) {
+        return !solved_in(out, components, row) && !constraints.find(p);
+    };
     parallel_each(
         n, [&](std::size_t row) { out.row_of[components.order[row]] = static_cast<std::uint32_t>(row); });
     const auto moved_to_b = [&](std::uint32_t row, std::uint32_t other) {
@@ -42,6 +47,8 @@ void assemble(std::span<const SpringFamily> families, const Load& load, const Co
         const auto row = static_cast<std::uint32_t>(r);
         const std::uint32_t p = components.order[row];
         std::uint32_t count = 0;
+        out.start[row + 1] = 0;
+        if (left_out(row, p)) return;
         for (const SpringFamily& family : families) {
             for (std::uint32_t k = family.adjacency->start[p]; k < family.adjacency->start[p + 1]; ++k) {
                 const auto [s, other] = family.adjacency->entries[k];
@@ -56,6 +63,7 @@ void assemble(std::span<const SpringFamily> families, const Load& load, const Co
     parallel_each(n, [&](std::size_t r) {
         const auto row = static_cast<std::uint32_t>(r);
         const std::uint32_t p = components.order[row];
+        if (left_out(row, p)) return;
         Mat3 diagonal = load.mass[p] * Mat3::Identity();
         Vec3 b = load.impulse[p];
         std::uint32_t e = out.start[row];

@@ -23,11 +23,12 @@ struct System {
         double a;
         Vec3 w;
     };
-    std::vector<std::uint32_t> row_of;  ///< (particles)
-    std::vector<std::uint32_t> start;   ///< (rows + 1) of `entries`
-    std::vector<Entry> entries;         ///< off-diagonal blocks
-    std::vector<Mat3> diagonal;         ///< (rows) [kg]
-    std::vector<Vec3> b;                ///< (rows) [kg·m/s]
+    std::vector<std::uint32_t> row_of;    ///< (particles)
+    std::vector<std::uint32_t> start;     ///< (rows + 1) of `entries`
+    std::vector<Entry> entries;           ///< off-diagonal blocks
+    std::vector<Mat3> diagonal;           ///< (rows) [kg]
+    std::vector<Vec3> b;                  ///< (rows) [kg·m/s]
+    std::vector<std::uint8_t> elsewhere;  ///< (components) 1: assembled and solved elsewhere; empty: none
     std::size_t rows() const { return diagonal.size(); }
 };
 
@@ -38,9 +39,19 @@ struct Load {
     std::span<const Vec3> drift;    ///< (particles) g, how far a particle moves without the solve [m]
 };
 
-/// Assembles the system of a step of h seconds for the implicit springs of `families`.
+/// Assembles the system of a step of h seconds for the implicit springs of `families`. Of components marked
+/// in `elsewhere`, (components) or empty, only the rows of constrained particles are made; the rest of theirs
+/// is left without a meaning.
 void assemble(std::span<const SpringFamily> families, const Load& load, const Components& components,
-              const Constraints& constraints, double h, System& out);
+              const Constraints& constraints, double h, System& out,
+              std::span<const std::uint8_t> elsewhere = {});
+
+/// Whether a row is to be solved in A.
+inline bool solved_in(const System& A, const Components& components, std::size_t row) {
+    if (A.elsewhere.empty()) return true;
+    const std::int32_t c = components.label[components.order[row]];
+    return c < 0 || A.elsewhere[static_cast<std::size_t>(c)] == 0;
+}
 
 /// (A y) of one row.
 inline Vec3 row_times(const System& A, std::uint32_t row, std::span<const Vec3> y) {

@@ -10,7 +10,8 @@
 namespace unravel {
 
 /// Stretch and shear springs: they act only in extension (Choi & Ko 2002; paper Sec. 2.1). Stretch springs
-/// come first; within a family they follow the grid.
+/// come first, cloth by cloth; those of a grid cloth lie direction by direction
+/// (sim/kernels/grid_springs.hpp).
 struct ExtensionSprings {
     std::vector<std::uint32_t> i, j;  ///< (springs) particles, i < j
     std::vector<double> rest;         ///< (springs) L [m]

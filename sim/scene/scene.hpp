@@ -134,7 +134,20 @@ struct Solid {
 };
 
 enum class Integrator { explicit_, implicit, newton, imex, adaptive_imex, bdf2, adaptive_imex2 };
-enum class Preconditioner { none, diagonal, block, constrained_block, ssor, ic0 };
+/// `automatic` chooses per component. `stencil_block` is the constrained block, and `multigrid` a cycle by
+/// lines, in single precision on the stencil of a grid; what lies on no grid gets the constrained block on
+/// rows.
+enum class Preconditioner {
+    none,
+    diagonal,
+    block,
+    constrained_block,
+    ssor,
+    ic0,
+    automatic,
+    stencil_block,
+    multigrid
+};
 
 /// When a spring that is slack at the start of a step begins to act within it: not before the next step
 /// (start), where the last step's motion carried on would make it taut (predicted), or where the solution

@@ -18,6 +18,8 @@ std::optional<Scene> paper_scene(const std::string& name, const ReproduceScale& 
     std::filesystem::path file = std::filesystem::path("scenes") / (name + ".toml");
     if (!std::filesystem::exists(file)) file = std::filesystem::path(UNRAVEL_SCENES) / (name + ".toml");
     if (!std::filesystem::exists(file)) return std::nullopt;
+    // The paper's own, so that iterations and multiplies compare.
+    overrides.insert(overrides.begin(), "solver.preconditioner=constrained-block");
     if (scale.quick) {
         const Scene whole = load_scene(file);
         const auto& n = whole.cloths.front().particles;

@@ -1,0 +1,88 @@
+// Where a grid cloth's springs are, by stencil, against the lists that say it by index.
+
+#include <catch2/catch.hpp>
+
+#include "tests/sim/scenes.hpp"
+
+using namespace unravel;
+using namespace unravel::testing;
+
+namespace {
+
+Cloth cloth_of(const char* name, int nu, int nv, bool tube) {
+    Cloth cloth = sheet(2, 1.0);
+    cloth.name = name;
+    cloth.particles = {nu, nv};
+    cloth.wrap = tube ? Wrap::tube : Wrap::open;
+    cloth.material.bend = 1e-5;
+    return cloth;
+}
+
+// Springs of `rows` that the lists place elsewhere.
+template <typename Springs>
+int misplaced(const GridSprings& grid, const SpringRows& rows, const Springs& springs) {
+    int wrong = 0;
+    for (std::uint32_t j = 0; j < rows.rows; ++j) {
+        for (std::uint32_t i = 0; i < rows.per_row; ++i) {
+            const std::uint32_t p = grid.at(i + rows.from[0], j + rows.from[1]);
+            const std::uint32_t q = grid.at(i + rows.to[0], j + rows.to[1]);
+            const std::uint32_t s = rows.at(i, j);
+            wrong += springs.i[s] != std::min(p, q) || springs.j[s] != std::max(p, q);
+            // Only along u, and only where the ring closes, are the ends swapped.
+            if (p > q) wrong += rows.from[1] != rows.to[1] || i + rows.to[0] < grid.nu;
+        }
+    }
+    return wrong;
+}
+
+}  // namespace
+
+TEST_CASE("every spring of a grid stands where its stencil says, and there is no other") {
+    Scene scene;
+    scene.cloths = {cloth_of("open", 6, 4, false),   cloth_of("tube", 7, 3, true),
+                    cloth_of("ribbon", 1, 9, false), cloth_of("row", 5, 1, false),
+                    cloth_of("ring", 3, 2, true),    cloth_of("point", 1, 1, false)};
+    Placement placement;
+    const ClothModel model = build_model(scene, placement);
+    REQUIRE(model.grids.size() == scene.cloths.size());
+    std::uint32_t stretch = 0, shear = 0, bend = 0;
+    for (const GridSprings& g : model.grids) {
+        for (const SpringRows* rows : {&g.u, &g.v}) {
+            CHECK(misplaced(g, *rows, model.springs) == 0);
+            if (rows->count() > 0) CHECK(rows->first == stretch);
+            stretch += rows->count();
+        }
+    }
+    for (const GridSprings& g : model.grids) {
+        for (const SpringRows* rows : {&g.diagonal, &g.anti}) {
+            CHECK(misplaced(g, *rows, model.springs) == 0);
+            if (rows->count() > 0) CHECK(rows->first == stretch + shear);
+            shear += rows->count();
+        }
+        for (const SpringRows* rows : {&g.bend_u, &g.bend_v, &g.bend_diagonal, &g.bend_anti}) {
+            CHECK(misplaced(g, *rows, model.bends) == 0);
+            if (rows->count() > 0) CHECK(rows->first == bend);
+            bend += rows->count();
+        }
+    }
+    CHECK(stretch == model.springs.stretch_count);
+    CHECK(stretch + shear == model.springs.size());
+    CHECK(bend == model.bends.size());
+}
+
+TEST_CASE("a cloth that bends nowhere has no bend springs, one that bends somewhere has them everywhere") {
+    Scene scene;
+    scene.cloths = {cloth_of("stiff", 6, 6, false)};
+    scene.cloths[0].material.bend = 0;
+    Placement placement;
+    CHECK(build_model(scene, placement).bends.size() == 0);
+    Region region;
+    region.box = {{0, 0}, {0.4, 1}};
+    region.material = scene.cloths[0].material;
+    region.material->bend = 1e-5;
+    scene.cloths[0].regions.push_back(region);
+    const ClothModel model = build_model(scene, placement);
+    CHECK(model.bends.size() == 2 * 6 * 4 + 2 * 4 * 4);
+    CHECK(*std::min_element(model.bends.stiffness.begin(), model.bends.stiffness.end()) == 0);
+    CHECK(*std::max_element(model.bends.stiffness.begin(), model.bends.stiffness.end()) > 0);
+}
