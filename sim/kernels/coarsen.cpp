@@ -164,6 +164,13 @@ void coarsen(const StencilGrid& g, const float* D, const float* active, const St
             }
             for (int d = 0; d < 4; ++d) store6<f8>(out + 6 * d * coarse.pitch + I, coarse.pitch, sum[d]);
             store6<f8>(own + I, coarse.pitch, sum[4]);
+            // Past the end of an odd tube stands its first column, which is not of the last aggregate.
+            if (g.tube && g.nu % 2 == 1 && coarse.nu - 1 < I + 8) {
+                float alone = 0;
+                for (int row = j; row < j + 2 && row < g.nv; ++row)
+                    alone += row_of(active, g, row, 1)[g.nu - 1];
+                any[coarse.nu - 1 - I] = alone;
+            }
             for (int k = 0; k < 8 && I + k < coarse.nu; ++k) {
                 row_of(slot, coarse, J, 1)[I + k] = any[k] > 0 ? free_slot : masked_slot;
                 row_of(coarse_active, coarse, J, 1)[I + k] = any[k] > 0 ? 1.0f : 0.0f;

@@ -88,7 +88,8 @@ UNRAVEL_INLINE void clear(T* p, std::ptrdiff_t count) {
 // S y for the partly constrained nodes of a row, 0 for the masked ones.
 UNRAVEL_INLINE void filter_row(const StencilGrid& g, int j, float* y) {
     const std::int32_t* const slot = row_of(g.slot, g, j, 1);
-    for (int i = 0; i < g.nu; i += 4) {
+    // Past the last column, too: what flows out of a tube there comes in again at the first.
+    for (int i = 0; i < g.columns(); i += 4) {
         if (slot[i] == free_slot && slot[i + 1] == free_slot && slot[i + 2] == free_slot &&
             slot[i + 3] == free_slot)
             continue;

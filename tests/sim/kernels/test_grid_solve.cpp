@@ -19,9 +19,16 @@ struct Layout {
     int nu, nv;
     bool tube;
 };
-constexpr Layout layouts[] = {{"open", 37, 29, false},    {"wide", 64, 20, false},   {"tube", 24, 17, true},
-                              {"odd tube", 25, 18, true}, {"ribbon", 1, 150, false}, {"row", 150, 1, false},
-                              {"tiny", 5, 3, false},      {"ring", 3, 4, true},      {"pair", 2, 1, false}};
+constexpr Layout layouts[] = {{"open", 37, 29, false},
+                              {"wide", 64, 20, false},
+                              {"tube", 24, 17, true},
+                              {"odd tube", 25, 18, true},
+                              {"tube of half a vector more", 20, 13, true},
+                              {"ribbon", 1, 150, false},
+                              {"row", 150, 1, false},
+                              {"tiny", 5, 3, false},
+                              {"ring", 3, 4, true},
+                              {"pair", 2, 1, false}};
 
 enum Held : unsigned { nothing = 0, pins = 1, contacts = 2 };
 
