@@ -55,7 +55,7 @@ StepReport adaptive_step(Simulation& simulation, const AdaptiveStep& settings, i
             state.halvings = static_cast<std::uint8_t>(halvings + 1);
             continue;
         }
-        report.rejected = rejected;
+        report.rejected += rejected;
         state.strain = report.max_strain;
         state.h_previous = h;
         state.part += length;

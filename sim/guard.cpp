@@ -10,6 +10,8 @@ namespace unravel {
 namespace {
 
 constexpr std::size_t most_named = 16;
+// Energy that a step may add, as a share of what the run has to spend.
+constexpr double rounding_share = 1e-10;
 
 std::string advice_for(Criterion criterion, const StepOptions& options, double h) {
     const bool explicit_springs = options.integrator != Integrator::implicit;
@@ -163,12 +165,12 @@ bool takes_energy(const ClothModel& model) {
            std::any_of(model.solids.begin(), model.solids.end(), moves);
 }
 
-Guard make_guard(const ClothModel& model, const ClothState& start) {
+Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
     Guard guard;
     StepReport report;
     MeasureWorkspace scratch;
     BendLimit bend;
-    limit_bend(model.bends, model.mass, 1e-9, bend);
+    limit_bend(model.bends, model.mass, h, bend);
     measure(model, bend, start, scratch, report);
     guard.strain += std::max(report.max_strain, 0.0);
     if (takes_energy(model)) return guard;
@@ -176,15 +178,53 @@ Guard make_guard(const ClothModel& model, const ClothState& start) {
     for (const double m : model.mass) weight += m * model.gravity.norm();
     for (const ClothPatch& patch : model.cloths) size = std::max({size, patch.size[0], patch.size[1]});
     const double height = height_energy(model, start.x), springs = report.potential - height;
-    guard.energy = height + 2.0 * (report.kinetic + springs + weight * size);
+    const double spent = report.kinetic + springs + weight * size;
+    guard.energy = height + 2.0 * spent;
+    guard.total = report.kinetic + report.potential;
+    if (!model.self_collision) guard.rounding = rounding_share * spent;
     return guard;
 }
+
+namespace {
+
+double total_energy(const StepReport& report) {
+    return report.kinetic + report.potential;
+}
+
+// Linearises the step again until it ends with no more energy than it began with, or until its end is met;
+// keeps that where it holds less.
+StepReport take_again(const ClothModel& model, const StepOptions& options, double h, double energy,
+                      const StepReport& first, const ClothState& before, ClothState& state,
+                      StepWorkspace& ws) {
+    StepOptions thorough = options;
+    thorough.energy_limit = energy;
+    ClothState once = before;
+    std::swap(state, once);
+    const StepReport second = step(model, thorough, h, state, ws);
+    const bool better = total_energy(second) < total_energy(first);
+    if (!better) std::swap(state, once);
+    StepReport report = better ? second : first;
+    report.converged = first.converged;  // how far the end was met shows in the energy
+    report.cg_iterations = first.cg_iterations + second.cg_iterations;
+    report.cg_iterations_max = std::max(first.cg_iterations_max, second.cg_iterations_max);
+    report.rvm = first.rvm + second.rvm;
+    if (first.rvm_whole) report.rvm_whole = *first.rvm_whole + second.rvm_whole.value_or(0);
+    report.times = first.times;
+    report.times += second.times;
+    report.rejected = 1;
+    return report;
+}
+
+}  // namespace
 
 StepReport guarded_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                         StepWorkspace& ws, Guard& guard) {
     guard.before = state;
     try {
-        const StepReport report = step(model, options, h, state, ws);
+        StepReport report = step(model, options, h, state, ws);
+        const bool grew = options.measure && total_energy(report) > guard.total + guard.rounding;
+        if (grew && ws.coupled && std::isfinite(total_energy(report)))
+            report = take_again(model, options, h, guard.total, report, guard.before, state, ws);
         Judgement judgement{model, options, state, h, {}};
         judgement.failure.step = report.step;
         judgement.failure.t = guard.before.t;
@@ -194,6 +234,7 @@ StepReport guarded_step(const ClothModel& model, const StepOptions& options, dou
         judgement.judge_strain(report, guard.strain);
         judgement.judge_energy(report, guard.energy);
         judgement.judge_solution(report, ws, guard.residual);
+        guard.total = total_energy(report);
         return report;
     } catch (const SimulationError&) {
         std::swap(state, guard.before);

@@ -8,8 +8,12 @@ namespace unravel {
 
 void measure(const ClothModel& model, const BendLimit& bend, const ClothState& state, MeasureWorkspace& ws,
              StepReport& report) {
+    measure(model, bend, state.x, state.v, ws, report);
+}
+
+void measure(const ClothModel& model, const BendLimit& bend, std::span<const Vec3> x, std::span<const Vec3> v,
+             MeasureWorkspace& ws, StepReport& report) {
     const ExtensionSprings& springs = model.springs;
-    const std::vector<Vec3>& x = state.x;
     const auto sum = [&](std::size_t size, const auto& f) {
         return parallel_sum(size, ws.partials, [&](std::size_t begin, std::size_t end) {
             double partial = 0;
@@ -31,7 +35,7 @@ void measure(const ClothModel& model, const BendLimit& bend, const ClothState& s
     report.potential -=
         sum(model.size(), [&](std::size_t p) { return model.mass[p] * model.gravity.dot(x[p]); });
     report.kinetic =
-        sum(model.size(), [&](std::size_t p) { return 0.5 * model.mass[p] * state.v[p].squaredNorm(); });
+        sum(model.size(), [&](std::size_t p) { return 0.5 * model.mass[p] * v[p].squaredNorm(); });
 
     report.lowest = std::numeric_limits<double>::infinity();
     for (const Vec3& position : x) report.lowest = std::min(report.lowest, position.y());

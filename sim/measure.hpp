@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "sim/model.hpp"
@@ -18,5 +19,9 @@ struct MeasureWorkspace {
 /// used.
 void measure(const ClothModel& model, const BendLimit& bend, const ClothState& state, MeasureWorkspace& ws,
              StepReport& report);
+
+/// The same of positions [m] and velocities [m/s], (particles).
+void measure(const ClothModel& model, const BendLimit& bend, std::span<const Vec3> x, std::span<const Vec3> v,
+             MeasureWorkspace& ws, StepReport& report);
 
 }  // namespace unravel

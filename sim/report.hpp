@@ -13,6 +13,14 @@ struct StageTimes {
     /// The step itself: without measuring it, and without the whole-system solve that it may be compared
     /// with.
     double step() const { return contact + collision + air + forces + graph + assembly + solve + advance; }
+    StageTimes& operator+=(const StageTimes& other) {
+        for (double StageTimes::*slot :
+             {&StageTimes::contact, &StageTimes::collision, &StageTimes::air, &StageTimes::forces,
+              &StageTimes::graph, &StageTimes::assembly, &StageTimes::solve, &StageTimes::advance,
+              &StageTimes::measure, &StageTimes::compare})
+            this->*slot += other.*slot;
+        return *this;
+    }
 };
 
 /// What one step was, in the quantities that stats.csv lists (one row per step).
@@ -31,7 +39,7 @@ struct StepReport {
     std::optional<std::uint64_t> rvm_whole;  ///< the same system undecomposed; only where it was asked for
     double whole_difference = 0;             ///< largest difference of the two solutions [m/s]
     bool converged = true;                   ///< every component reached the tolerance
-    std::uint32_t rejected = 0;              ///< adaptive step: larger steps tried before this one and undone
+    std::uint32_t rejected = 0;  ///< attempts undone before this one (guarded_step(), adaptive_step())
     std::uint32_t contacts = 0;
     /// Temporary springs of self-collision; they count as implicit or explicit too.
     std::uint32_t self_contacts = 0;

@@ -20,13 +20,15 @@ Simulation start_simulation(const Scene& scene) {
     simulation.steps_per_frame = steps_per_frame(scene);
     simulation.state = initial_state(placement);
     simulation.adaptive = scene.solver.adaptive;
-    simulation.guard = make_guard(simulation.model, simulation.state);
+    simulation.guard = make_guard(simulation.model, simulation.state, scene.solver.step);
     return simulation;
 }
 
 void restore(Simulation& simulation, const FrameRecord& record) {
     simulation.state = record.state;
     simulation.frame = record.frame;
+    if (record.reports.empty()) return;
+    simulation.guard.total = record.reports.back().kinetic + record.reports.back().potential;
 }
 
 FrameRecord present_record(const Simulation& simulation) {

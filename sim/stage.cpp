@@ -102,6 +102,13 @@ double kinetic_of(std::span<const double> mass, std::span<const Vec3> y) {
     return sum;
 }
 
+// J, mechanical, where the step would end if it ended at (x*, v*).
+double energy_at_end(const ClothModel& model, StepWorkspace& ws) {
+    StepReport end;
+    measure(model, ws.bend_limit, ws.stage.x_at, ws.stage.v_at, ws.measure, end);
+    return end.kinetic + end.potential;
+}
+
 }  // namespace
 
 Families families_of(const ClothModel& model, const StepWorkspace& ws) {
@@ -203,6 +210,10 @@ void iterate(const ClothModel& model, const StepOptions& options, double h, Stag
     for (int k = 1;; ++k) {
         advance(1.0);
         ws.constraints.fulfil();
+        if (options.energy_limit && energy_at_end(model, ws) <= *options.energy_limit) {
+            ws.dv.assign(model.size(), Vec3::Zero());
+            return;
+        }
         double residual = residual_of(model, ws), share = 1.0;
         for (int halving = 0; residual > before && halving < newton_halvings; ++halving) {
             share *= 0.5;

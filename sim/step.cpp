@@ -130,7 +130,8 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
 
     // Independent components (Sec. 5), A Δv = b (Eq. 5) under Sx = Sb, (I − S)x = (I − S)z (Eq. 9)
     solve_stage(model, options, state.dv, timer, ws, report);
-    if (scheme.iterates) {
+    const bool iterates = scheme.iterates || options.energy_limit;
+    if (iterates) {
         iterate(model, options, h, timer, ws, report);
     } else if (options.activation == Activation::resolve) {
         solve_again_where_taut(model, options, h, timer, ws, report);
@@ -152,7 +153,7 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
     }
     parallel_each(n, [&](std::size_t p) {
         const Vec3 v_next = stage.v_at[p] + ws.dv[p];
-        state.dv[p] = scheme.iterates ? Vec3(v_next - state.v[p]) : ws.dv[p];
+        state.dv[p] = iterates ? Vec3(v_next - state.v[p]) : ws.dv[p];
         state.v[p] = v_next;
         state.x[p] = ws.base[p] + stage.h * v_next;
     });

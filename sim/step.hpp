@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,10 @@ struct StepOptions {
     Activation activation = Activation::predicted;  ///< when a slack spring becomes implicit
     double activation_band = 0.0;                   ///< see extension_forces()
     SolveOptions solve;
-    bool decompose = true;       ///< false: the whole cloth as one system
+    bool decompose = true;  ///< false: the whole cloth as one system
+    /// J: linearise again, whatever the scheme, until the step's end is met or holds no more energy than
+    /// this.
+    std::optional<double> energy_limit;
     bool compare_whole = false;  ///< solve the undecomposed system too and report what it took
     bool measure = true;         ///< fill the report's strain, lowest point and energies
 };

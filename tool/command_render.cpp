@@ -129,7 +129,11 @@ int command_render(const Options& options) {
     if (!options.quiet) {
         fmt::print("  {}\n", folder.report().string());
     }
-    return InterruptWatch::requested() ? exit_interrupted : exit_done;
+    if (InterruptWatch::requested()) return exit_interrupted;
+    // A state that is damaged hides the frames from it on: named when all before it are drawn.
+    if (last < clip_options.last && std::filesystem::exists(cached.record(frames)))
+        read_record(cached.record(frames), hash, model.size(), model.springs.size());
+    return exit_done;
 }
 
 }  // namespace unravel

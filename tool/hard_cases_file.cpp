@@ -49,6 +49,9 @@ std::vector<HardCase> read_hard_cases(const std::filesystem::path& file) {
         c.fed = t["fed"].value_or(c.fed);
         c.rest = t["rest"].value_or(c.rest);
         c.penetration = t["penetration"].value_or(c.penetration);
+        c.flicker = t["flicker"].value_or(c.flicker);
+        c.chatter = t["chatter"].value_or(c.chatter);
+        c.jitter = t["jitter"].value_or(c.jitter);
         c.frames = static_cast<int>(t["frames"].value_or(std::int64_t{0}));
         c.allow_unstable = t["allow_unstable"].value_or(false);
         if (c.name.empty() || c.what.empty()) throw InputError(file, "a case without name or what");

@@ -86,6 +86,10 @@ Json stability_json(const std::vector<HardLine>& lines) {
                  {"strain_bound", line.hard.strain},
                  {"energy_rise", o.energy_rise},
                  {"energy_fed", line.hard.fed},
+                 {"steps_taken_again", o.again},
+                 {"flicker", o.flicker},
+                 {"chatter", o.chatter},
+                 {"jitter", o.jitter},
                  {"penetration", o.penetration},
                  {"pin_error", o.pin_error},
                  {"final_speed", o.final_speed},
@@ -101,20 +105,23 @@ Json stability_json(const std::vector<HardLine>& lines) {
 }
 
 std::string stability_markdown(const std::vector<HardLine>& lines) {
-    std::string out =
-        "| case | must | verdict | largest strain | energy | CG ≤ | speed at the end, m/s |\n"
-        "|---|---|---|---|---|---|---|\n";
+    std::string survive =
+        "| must survive | largest strain (bound) | energy | deepest in a solid | CG iterations | fastest at "
+        "the "
+        "end | |\n|---|---|---|---|---|---|---|\n";
+    std::string refuse = "| must be refused or stopped | | with the words |\n|---|---|---|\n";
     for (const HardLine& line : lines) {
         const HardOutcome& o = line.outcome;
-        out += fmt::format("| {} | {} | {} | ", line.hard.what, must_word(line.hard.must), verdict(line));
-        if (o.kind == Kind::survived) {
-            out += fmt::format("{} (≤ {}) | {} | {} | {:.1e} |\n", percent(o.max_strain),
-                               percent(line.hard.strain), energy_text(line), o.cg_most, o.final_speed);
+        if (line.hard.must == Must::survive) {
+            survive += fmt::format("| {} | {} (≤ {}) | {} | {} | ≤ {} | {:.1g} m/s | {} |\n", line.hard.what,
+                                   percent(o.max_strain), percent(line.hard.strain), energy_text(line),
+                                   o.penetration > 0 ? fmt::format("{:.1g} m", o.penetration) : "none inside",
+                                   o.cg_most, o.final_speed, verdict(line));
         } else {
-            out += fmt::format("{} | | | |\n", o.says);
+            refuse += fmt::format("| {} | {} | {} |\n", line.hard.what, verdict(line), o.says);
         }
     }
-    return out;
+    return survive + "\n" + refuse;
 }
 
 std::string stability_html(const std::vector<HardLine>& lines, const std::vector<std::string>& maps) {
@@ -144,9 +151,12 @@ std::string stability_html(const std::vector<HardLine>& lines, const std::vector
                 "<dl><dt>particles, steps</dt><dd>{}, {}</dd><dt>largest strain</dt><dd>{} (≤ {})</dd>"
                 "<dt>energy</dt><dd>{}</dd><dt>deepest in a solid</dt><dd>{:.1g} m</dd>"
                 "<dt>CG iterations</dt><dd>≤ {}</dd><dt>fastest at the end</dt><dd>{:.1e} m/s</dd>"
+                "<dt>taken again</dt><dd>{} steps</dd>"
+                "<dt>flicker, chatter, jitter</dt><dd>{}, {}, {}</dd>"
                 "<dt>1 and 2 threads</dt><dd>{} {:016x}</dd></dl>",
                 o.particles, o.steps, percent(o.max_strain), percent(line.hard.strain), energy_text(line),
-                o.penetration, o.cg_most, o.final_speed, o.same_bits ? "same" : "DIFFERENT", o.hash);
+                o.penetration, o.cg_most, o.final_speed, o.again, percent(o.flicker), percent(o.chatter),
+                percent(o.jitter), o.same_bits ? "same" : "DIFFERENT", o.hash);
         } else {
             out += fmt::format("<p>{}</p>", escaped(bound_text(line)));
         }

@@ -23,7 +23,7 @@ std::string terminal_line(const HardLine& line);
 
 nlohmann::ordered_json stability_json(const std::vector<HardLine>& lines);
 
-/// The table of the README's section on reliability.
+/// The two tables of the README's section on reliability: what must survive, what must not.
 std::string stability_markdown(const std::vector<HardLine>& lines);
 
 /// A page with each case's picture and numbers, and the maps' pictures.

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Nothing is lost: runs of the tool that are stopped in every way a run can be, then gone on with.
 
-    test_runs.py TOOL [NAME ...]      UNRAVEL_KILLS=200 for the long version of the random kills
+    test_runs.py TOOL [NAME ...]      UNRAVEL_KILLS=200 for the long version of the random kills,
+                                      UNRAVEL_FRAMES=2000 for that of the memory test
 """
 
 import contextlib
@@ -12,6 +13,7 @@ import random
 import resource
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -23,7 +25,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 SCENE = HERE / "tiny.toml"
 TOOL = ""
 FRAMES = 15  # of tiny.toml
-DONE, USAGE, SIMULATION, OUTPUT, INTERRUPTED = 0, 2, 5, 6, 130
+DONE, USAGE, SCENE_ERROR, SIMULATION, OUTPUT, INTERRUPTED = 0, 2, 3, 5, 6, 130
 PATIENCE = 120  # s, for anything that waits; only ever reached where something hangs
 
 
@@ -186,6 +188,21 @@ def test_a_file_that_cannot_grow_stops_the_run(reference, folder):
     reference.check(out, "after a limit on file sizes")
 
 
+def test_a_folder_that_cannot_be_written_is_named(reference, folder):
+    place = folder / "disk"
+    with small_disk(place, "1m") as remount:
+        if remount is None:
+            return
+        out = place / "out"
+        run(job(out, "--set", "clip.duration=0.2"))
+        kept = content(out)
+        subprocess.run(["mount", "-o", "remount,ro", str(place)], check=True, capture_output=True)
+        text = run(job(out, "--resume"), OUTPUT)
+        assert "Read-only" in text and str(place) in text, text
+        assert "Read-only" in run(job(place / "new"), OUTPUT)
+        check_same(kept, content(out), "a folder that turned read-only")
+
+
 def test_a_folder_that_cannot_be_made_is_named(reference, folder):
     blocked = folder / "a_file"
     blocked.write_text("not a folder\n")
@@ -252,6 +269,121 @@ def test_damaged_states_are_simulated_again(reference, folder):
     (out / "stats.csv").write_text("nonsense\n")
     run(job(out, "--resume"))
     reference.check(out, "after damage")
+
+
+def test_broken_caches_are_named_where_only_they_tell(reference, folder):
+    def broken(name, break_it):
+        out = folder / name
+        shutil.copytree(reference.folder, out)
+        break_it(out)
+        for command in (["render", out, "--device", "software"], ["inspect", out, "--frame", "7", "--device", "software"]):
+            text = finish(start(command), OUTPUT)
+            assert "frame_0006.state" in text or "frame_0007.state" in text, text
+        shutil.rmtree(out)
+
+    def replace(data, number=None):
+        def break_it(out):
+            for k in (6, 7) if number is None else (number,):
+                file = out / f"cache/frame_{k:04d}.state"
+                file.write_bytes(data(file.read_bytes()))
+        return break_it
+
+    broken("empty", replace(lambda data: b""))
+    broken("cut", replace(lambda data: data[: len(data) // 2]))
+    broken("flipped", replace(lambda data: data[:200] + bytes([data[200] ^ 4]) + data[201:]))
+    broken("nonsense", replace(lambda data: b"nonsense" * 1000))
+    broken("longer", replace(lambda data: data + b"more"))
+    broken("foreign", replace(lambda data: data[:8] + struct.pack("<Q", 1) + data[16:]))
+
+    def folder_in_its_place(out):
+        for k in (6, 7):
+            (out / f"cache/frame_{k:04d}.state").unlink()
+            (out / f"cache/frame_{k:04d}.state").mkdir()
+
+    broken("a_folder", folder_in_its_place)
+
+
+# What a hand can mistype or a program can get wrong: the command line, its exit code, a part of the message.
+COMMAND_LINES = [
+    ([], USAGE, "subcommand"),
+    (["bogus"], USAGE, "subcommand"),
+    (["run"], USAGE, "SCENE"),
+    (["run", "no_such.toml"], OUTPUT, "no_such.toml can't be read: No such file"),
+    (["run", "."], OUTPUT, "Is a directory"),
+    (["run", "/dev/null"], SCENE_ERROR, "cloth"),
+    (["run", "/dev/zero"], SCENE_ERROR, "/dev/zero"),
+    (["run", "/proc/self/mem"], OUTPUT, "can't be read"),
+    (["check", "{scene}", "--set"], USAGE, "--set"),
+    (["check", "{scene}", "--set", "x"], SCENE_ERROR, "x"),
+    (["check", "{scene}", "--set", "cloth.densty=1"], SCENE_ERROR, "density"),
+    (["check", "{scene}", "--set", "cloth.density=nan"], SCENE_ERROR, "density"),
+    (["check", "{scene}", "--set", "cloth.density=1e999"], SCENE_ERROR, "density"),
+    (["check", "{scene}", "--set", "gravity=[0,-inf,0]"], SCENE_ERROR, "gravity"),
+    (["check", "{scene}", "--set", "cloth.particles=[99999999,99999999]"], SCENE_ERROR, "particles"),
+    (["check", "{scene}", "--set", "clip.duration=1e30"], SCENE_ERROR, "duration"),
+    (["run", "{scene}", "--threads", "0"], USAGE, "--threads"),
+    (["run", "{scene}", "--threads", "99999999999999999999"], USAGE, "--threads"),
+    (["run", "{scene}", "--frames", "9-2"], USAGE, "--frames"),
+    (["run", "{scene}", "--frames", "0-99999999999999999999"], USAGE, "--frames"),
+    (["run", "{scene}", "--size", "big"], USAGE, "--size"),
+    (["run", "{scene}", "--style", "neon"], USAGE, "--style"),
+    (["run", "{scene}", "--camera", "nobody"], USAGE, "--camera"),
+    (["run", "{scene}", "--crf", "99"], USAGE, "--crf"),
+    (["run", "{scene}", "--no-such-option"], USAGE, "--no-such-option"),
+    (["run", "{scene}", "--resume", "--force"], None, ""),
+    (["render", "no_such_run"], USAGE, "no_such_run"),
+    (["render", "{here}"], USAGE, "holds no run"),
+    (["inspect", "{run}", "--frame", "0"], USAGE, "--frame"),
+    (["inspect", "{run}", "--frame", "99999"], USAGE, "99999"),
+    (["inspect", "{run}", "--frame", "3", "--particle", "99999999"], USAGE, "--particle"),
+    (["inspect", "{run}", "--frame", "3", "--step", "77"], USAGE, "--step"),
+    (["stability", "no_such_case"], USAGE, "cases.toml"),
+    (["stability", "--scenes", "no_such_folder"], OUTPUT, "no_such_folder"),
+    (["accuracy", "{scene}", "--budget", "-1"], USAGE, "--budget"),
+    (["schema", "nothing"], USAGE, "nothing"),
+]
+
+
+def test_broken_command_lines_end_in_a_message_and_their_exit_code(reference, folder):
+    names = {"{scene}": str(SCENE), "{run}": str(reference.folder), "{here}": str(folder)}
+    for line, code, says in COMMAND_LINES:
+        process = start([names.get(word, word) for word in line], cwd=folder if "stability" not in line else HERE.parents[1])
+        out, err = process.communicate(timeout=PATIENCE)
+        text = (out + err).decode()
+        if code is None:
+            assert process.returncode in (DONE, USAGE), f"{line}: exit {process.returncode}\n{text}"
+            continue
+        assert process.returncode == code, f"{line}: exit {process.returncode}, not {code}\n{text}"
+        assert says in text, f"{line}: nothing about '{says}'\n{text}"
+    reference.check(reference.folder, "a run that broken command lines named")
+
+
+def resident(process):
+    """Memory that a process holds [MiB], or None once it has ended."""
+    try:
+        for line in open(f"/proc/{process.pid}/status", encoding="ascii"):
+            if line.startswith("VmRSS:"):
+                return int(line.split()[1]) / 1024
+    except OSError:
+        pass
+    return None
+
+
+def test_memory_stays_flat(reference, folder):
+    frames = int(os.environ.get("UNRAVEL_FRAMES", "100"))
+    out = folder / "long"
+    process = start(job(out, "--quiet", "--set", f"clip.duration={frames / 25}", "--size", "160x120"), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    held = []  # at a quarter of the frames, half, three quarters
+    for share in (0.25, 0.5, 0.75, 0.97):
+        wait_for_frames(process, out, int(share * frames))
+        held.append(resident(process))
+    assert process.wait(timeout=PATIENCE) == DONE
+    assert None not in held, "it had ended before it was looked at"
+    print(f"    {frames} frames, MiB at a quarter, half, three quarters, the end: "
+          + ", ".join(f"{m:.1f}" for m in held), flush=True)
+    # A report row, a hash and an inspector's line per frame are kept: some kB. A texture would be 75 kB.
+    grown = 1024 * (held[-1] - held[0]) / (0.72 * frames)
+    assert held[-1] - held[0] < max(8, 0.016 * frames), f"{grown:.0f} kB a frame"
 
 
 def test_pictures_of_another_look_are_not_taken_for_this_one(reference, folder):

@@ -1,0 +1,19 @@
+// What the fuzzer found worth keeping, fed to its target again: broken and whole bodies of frame records.
+#define LLVMFuzzerTestOneInput fuzz_record
+#include "tests/fuzz/record_fuzz.cpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "base/whole_file.hpp"
+
+TEST_CASE("the record reader bears its fuzzer's corpus", "[corpus]") {
+    int files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(UNRAVEL_SOURCE_DIR "/tests/fuzz/records")) {
+        const std::vector<std::uint8_t> bytes = read_whole_file(entry.path(), 1 << 20);
+        INFO(entry.path());
+        CHECK_NOTHROW(fuzz_record(bytes.data(), bytes.size()));
+        ++files;
+    }
+    CHECK(files > 20);
+}

@@ -1,0 +1,49 @@
+// Every scene that ships gives the same bits whatever the number of threads. Shipped sizes, because a smaller
+// cloth is one piece of work; few steps, because the whole clips are long.
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <catch2/catch.hpp>
+
+#include "sim/frame_record.hpp"
+#include "sim/scene/load.hpp"
+#include "sim/simulate.hpp"
+
+using namespace unravel;
+
+namespace {
+
+constexpr int steps = 24;
+
+std::vector<std::uint64_t> hashes(const Scene& scene, int threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(threads));
+    tbb::task_arena arena(threads);
+    return arena.execute([&] {
+        Simulation simulation = start_simulation(scene);
+        std::vector<std::uint64_t> out;
+        for (int k = 0; k < steps; ++k) {
+            next_step(simulation);
+            out.push_back(state_hash(simulation.state));
+        }
+        return out;
+    });
+}
+
+}  // namespace
+
+TEST_CASE("one, two and three threads give the same bits on every scene that ships", "[threads]") {
+    int scenes = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(UNRAVEL_SOURCE_DIR "/scenes")) {
+        if (entry.path().extension() != ".toml") continue;
+        ++scenes;
+        const Scene scene = load_scene(entry.path());
+        const std::vector<std::uint64_t> one = hashes(scene, 1);
+        INFO(entry.path().filename());
+        CHECK(hashes(scene, 2) == one);
+        CHECK(hashes(scene, 3) == one);
+        CHECK(one.front() != one.back());
+    }
+    CHECK(scenes >= 10);
+}
