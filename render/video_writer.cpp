@@ -37,6 +37,8 @@ void check_video_settings(const std::filesystem::path& file, const VideoSettings
     if (s.alpha && std::string_view(container.muxer) != "matroska")
         throw VideoError("only .mkv keeps transparency here: choose it, or pictures without a video");
     if (s.threads < 1 || s.threads > 64) throw VideoError("the encoder's threads must be 1 to 64");
+    // Opened for a moment: one that is not to be had is found out before anything is computed.
+    av::choose_encoder(container, s);
 }
 
 struct VideoWriter::Parts {

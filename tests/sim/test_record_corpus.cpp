@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "base/whole_file.hpp"
+#include "source_dir.hpp"
 
 TEST_CASE("the record reader bears its fuzzer's corpus", "[corpus]") {
     int files = 0;

@@ -9,6 +9,7 @@
 #include "sim/frame_record.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/simulate.hpp"
+#include "source_dir.hpp"
 
 using namespace unravel;
 

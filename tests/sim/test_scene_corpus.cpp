@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "base/whole_file.hpp"
+#include "source_dir.hpp"
 
 TEST_CASE("the scene loader bears its fuzzer's corpus", "[corpus]") {
     int files = 0;
