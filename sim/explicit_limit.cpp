@@ -34,7 +34,8 @@ double larger_eigenvalue(const Eigen::Matrix2d& A) {
 }  // namespace
 
 ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options, double h) {
-    const Splitting splitting = scheme_of(options.integrator).splitting(options.threshold);
+    const Scheme& scheme = scheme_of(options.integrator);
+    const Splitting splitting = scheme.splitting(options.threshold);
     // What is pinned for good does not swing.
     std::vector<char> held(model.size(), 0);
     for (const PinnedGroup& pin : model.pins) {
@@ -59,7 +60,7 @@ ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options
         double share = 0;
         for (std::uint32_t p = 0; p < model.size(); ++p) {
             if (held[p] != 0) continue;
-            const double here = 0.5 * larger_eigenvalue(blocks[p]) / model.mass[p];
+            const double here = 2 * larger_eigenvalue(blocks[p]) / (model.mass[p] * scheme.explicit_bound);
             if (here <= share) continue;
             share = here;
             if (out) *out = {share, p, kappas[p], 0};

@@ -27,7 +27,7 @@ void add_forces(const ClothModel& model, StepWorkspace& ws) {
         };
         gather(model.spring_adjacency, ws.extension.force);
         if (model.self_collision) gather(ws.self.adjacency, ws.self.forces.force);
-        gather(model.bend_adjacency, ws.bend);
+        gather(model.bend_adjacency, ws.bend_is_implicit ? ws.implicit_bend.forces.force : ws.bend);
         const Vec3 friction = rubbed ? ws.friction[p] : Vec3(Vec3::Zero());
         ws.impulse[p] = friction + stage.h_force * f + model.mass[p] * (stage.v[p] - stage.v_at[p]);
     });
@@ -85,6 +85,19 @@ void predict(std::span<const Vec3> dv, StepWorkspace& ws) {
                   [&](std::size_t p) { ws.end[p] = ws.base[p] + ws.stage.h * (ws.stage.v_at[p] + dv[p]); });
 }
 
+// Where the step would end if nothing but the constraints changed v*: implicit springs are linearised there.
+// Multistep schemes look ahead by themselves.
+void look_ahead(const ClothModel& model, const StepOptions& options, StepWorkspace& ws) {
+    ws.ahead.clear();
+    if (options.activation != Activation::ahead || scheme_of(options.integrator).multistep) return;
+    ws.ahead.resize(model.size());
+    parallel_each(model.size(), [&](std::size_t p) {
+        const Constraint* c = ws.constraints.find(static_cast<std::uint32_t>(p));
+        const Vec3 v = c ? Vec3(ws.stage.v_at[p] + c->z - c->S * c->z) : ws.stage.v_at[p];
+        ws.ahead[p] = ws.base[p] + ws.stage.h * v;
+    });
+}
+
 // Sum over particles of |S y|²/m, of the stage's right-hand side y: what Newton's method makes small.
 double residual_of(const ClothModel& model, const StepWorkspace& ws) {
     double sum = 0;
@@ -112,13 +125,18 @@ double energy_at_end(const ClothModel& model, StepWorkspace& ws) {
 }  // namespace
 
 Families families_of(const ClothModel& model, const StepWorkspace& ws) {
-    return {{SpringFamily{&model.springs, &model.spring_adjacency, &ws.extension},
-             SpringFamily{&ws.self.springs, &ws.self.adjacency, &ws.self.forces}},
-            model.self_collision ? 2u : 1u};
+    Families families;
+    const auto add = [&](const SpringFamily& family) { families.list[families.count++] = family; };
+    add({&model.springs, &model.spring_adjacency, &ws.extension});
+    if (model.self_collision)
+        add({&ws.self.springs, &ws.self.adjacency, &ws.self.forces, ws.drift_from_start});
+    if (ws.bend_is_implicit)
+        add({&ws.implicit_bend.springs, &model.bend_adjacency, &ws.implicit_bend.forces});
+    return families;
 }
 
-void explicit_forces(const ClothModel& model, double t, double h, StageTimer& timer, StepWorkspace& ws,
-                     StepReport& report) {
+void explicit_forces(const ClothModel& model, const StepOptions& options, double t, double h,
+                     StageTimer& timer, StepWorkspace& ws, StepReport& report) {
     const Stage& stage = ws.stage;
     if (model.wind) {
         ws.air.resize(model.air.corners.size());
@@ -126,8 +144,12 @@ void explicit_forces(const ClothModel& model, double t, double h, StageTimer& ti
         timer.lap(report.times.air);
     }
     limit_bend(model.bends, model.mass, h, ws.bend_limit);
-    ws.bend.resize(model.bends.size());
-    bend_forces(model.bends, ws.bend_limit, stage.x_at, ws.bend);
+    ws.bend_is_implicit = scheme_of(options.integrator).implicit_bend &&
+                          options.bend == BendTreatment::scheme && model.bends.size() > 0;
+    if (!ws.bend_is_implicit) {
+        ws.bend.resize(model.bends.size());
+        bend_forces(model.bends, ws.bend_limit, stage.x_at, ws.bend);
+    }
     timer.lap(report.times.forces);
 }
 
@@ -139,12 +161,22 @@ void linearise(const ClothModel& model, const StepOptions& options, double h, St
         self_collide(model, stage.x_at, stage.v_at, h, splitting.stretch_threshold, ws.self);
         timer.lap(report.times.collision);
     }
+    look_ahead(model, options, ws);
     extension_forces(model.springs, model.mass, stage.x_at, stage.v_at, h, splitting, options.activation_band,
-                     ws.extension, ws.taut);
+                     ws.extension, ws.taut, ws.ahead);
+    if (ws.bend_is_implicit)
+        bend_jacobians(model.bends, ws.bend_limit, ws.ahead.empty() ? stage.x_at : ws.ahead,
+                       ws.implicit_bend);
     add_forces(model, ws);
-    ws.drift.resize(model.size());
-    parallel_each(model.size(),
-                  [&](std::size_t p) { ws.drift[p] = ws.base[p] + stage.h * stage.v_at[p] - stage.x_at[p]; });
+    const std::span<const Vec3> at = ws.ahead.empty() ? stage.x_at : ws.ahead;
+    const auto drift_from = [&](std::span<const Vec3> from, std::vector<Vec3>& drift) {
+        drift.resize(model.size());
+        parallel_each(model.size(),
+                      [&](std::size_t p) { drift[p] = ws.base[p] + stage.h * stage.v_at[p] - from[p]; });
+    };
+    drift_from(at, ws.drift);
+    ws.drift_from_start.clear();
+    if (model.self_collision && !ws.ahead.empty()) drift_from(stage.x_at, ws.drift_from_start);
     timer.lap(report.times.forces);
 }
 

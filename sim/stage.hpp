@@ -10,17 +10,19 @@ namespace unravel {
 /// The linear algebra of one stage (sim/integrators/scheme.hpp): forces at (x*, v*), the system for Δv, and
 /// what some schemes do beyond one solve. All work on the step's workspace.
 
-/// Springs that may be implicit: the cloth's, and those of self-collision where the scene calls for it.
+/// Springs that may be implicit: the cloth's; those of self-collision where the scene calls for it; bend
+/// springs where the scheme treats them so.
 struct Families {
-    std::array<SpringFamily, 2> list;
-    std::size_t count;
+    std::array<SpringFamily, 3> list{};
+    std::size_t count = 0;
     operator std::span<const SpringFamily>() const { return {list.data(), count}; }
 };
 Families families_of(const ClothModel& model, const StepWorkspace& ws);
 
-/// Forces that are always explicit, at (x*, v*): bend springs and air, for the step of h seconds from t.
-void explicit_forces(const ClothModel& model, double t, double h, StageTimer& timer, StepWorkspace& ws,
-                     StepReport& report);
+/// Forces that are explicit, at (x*, v*): air, and bend springs unless the scheme treats them implicitly, for
+/// the step of h seconds from t.
+void explicit_forces(const ClothModel& model, const StepOptions& options, double t, double h,
+                     StageTimer& timer, StepWorkspace& ws, StepReport& report);
 
 /// Forces and Jacobians of the springs at (x*, v*) (Sec. 2) under the scheme's splitting (Sec. 3.5), and the
 /// stage's right-hand side.

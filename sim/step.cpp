@@ -86,6 +86,7 @@ StepOptions step_options(const Solver& solver) {
     StepOptions options;
     options.integrator = solver.integrator;
     options.threshold = solver.threshold;
+    options.bend = solver.bend;
     options.activation = solver.activation;
     options.activation_band = solver.activation_band;
     options.solve = {solver.preconditioner, solver.tolerance, solver.max_iterations};
@@ -125,7 +126,7 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
     // Forces at (x*, v*) (Sec. 2) and the adaptive IMEX splitting (Sec. 3.5)
     ws.taut.clear();
     if (options.activation == Activation::predicted) predict_taut(model, state.dv, ws);
-    explicit_forces(model, state.t, h, timer, ws, report);
+    explicit_forces(model, options, state.t, h, timer, ws, report);
     linearise(model, options, h, timer, ws, report);
 
     // Independent components (Sec. 5), A Δv = b (Eq. 5) under Sx = Sb, (I − S)x = (I − S)z (Eq. 9)

@@ -21,7 +21,8 @@ namespace unravel {
 
 struct StepOptions {
     Integrator integrator = Integrator::adaptive_imex;
-    double threshold = 0.2;                         ///< of adaptive IMEX on κ (7)
+    double threshold = 0.2;  ///< of adaptive IMEX on κ (7)
+    BendTreatment bend = BendTreatment::scheme;
     Activation activation = Activation::predicted;  ///< when a slack spring becomes implicit
     double activation_band = 0.0;                   ///< see extension_forces()
     SolveOptions solve;
@@ -44,10 +45,14 @@ struct StepWorkspace {
     std::vector<Touch> touches;
     ExtensionForces extension;
     BendLimit bend_limit;
-    std::vector<Vec3> bend;          ///< (bend springs) N
-    std::vector<Vec3> air;           ///< (cells) N; empty without wind
-    SelfCollisionWorkspace self;     ///< empty without self-collision
-    std::vector<std::uint8_t> taut;  ///< (springs) 1: slack at x*, taut at the end; or empty
+    std::vector<Vec3> bend;      ///< (bend springs) N; empty where they are implicit
+    ImplicitBend implicit_bend;  ///< empty where they are explicit
+    bool bend_is_implicit = false;
+    std::vector<Vec3> air;               ///< (cells) N; empty without wind
+    SelfCollisionWorkspace self;         ///< empty without self-collision
+    std::vector<std::uint8_t> taut;      ///< (springs) 1: slack at x*, taut at the end; or empty
+    std::vector<Vec3> ahead;             ///< (particles) where implicit springs are linearised; empty: at x*
+    std::vector<Vec3> drift_from_start;  ///< (particles) drift for those that are linearised at x* even so
     std::vector<Vec3> base, friction, impulse, drift, end, guess;  ///< (particles)
     std::vector<Vec3> reaction;                                    ///< (constraints)
     bool coupled = false;  ///< some spring is implicit, so that there is a system

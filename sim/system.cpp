@@ -68,13 +68,14 @@ void assemble(std::span<const SpringFamily> families, const Load& load, const Co
         Vec3 b = load.impulse[p];
         std::uint32_t e = out.start[row];
         for (const SpringFamily& family : families) {
+            const std::span<const Vec3> drift = family.drift.empty() ? load.drift : family.drift;
             for (std::uint32_t k = family.adjacency->start[p]; k < family.adjacency->start[p + 1]; ++k) {
                 const auto [s, other] = family.adjacency->entries[k];
                 if (family.forces->state[s] != SpringState::implicit) continue;
                 const Coupling c = coupling_of(family, s, h);
                 diagonal.noalias() += c.scale * c.u * c.u.transpose();
                 diagonal.diagonal().array() += c.a;
-                const Vec3 g = load.drift[other] - load.drift[p];
+                const Vec3 g = drift[other] - drift[p];
                 b += h * (c.across * g + c.along * c.u.dot(g) * c.u);
                 if (moved_to_b(row, other)) {
                     const Vec3& z = constraints.find(other)->z;

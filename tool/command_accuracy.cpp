@@ -5,199 +5,108 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <chrono>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "base/whole_file.hpp"
 #include "render/png.hpp"
+#include "render/video.hpp"
 #include "sim/scene/load.hpp"
 #include "tool/interrupt.hpp"
 #include "tool/options.hpp"
-#include "tool/progress.hpp"
-#include "tool/run_folder.hpp"
+#include "tool/studies/accuracy_contrast.hpp"
+#include "tool/studies/accuracy_study.hpp"
 #include "tool/studies/accuracy_verdict.hpp"
+#include "tool/studies/accuracy_video.hpp"
 
 namespace unravel {
 
 namespace {
 
-// Shares of the budget: for the reference, and until which every point is to have run once.
-constexpr double reference_share = 0.25, first_runs_share = 0.7;
-constexpr std::size_t wanted_runs = 5;
-// Points this much dearer than the front's at their error are timed once.
-constexpr double near_front = 4;
-constexpr std::size_t largest_csv = std::size_t{1} << 26;
+// Share of the budget that the video's two runs may take.
+constexpr double video_share = 0.1;
 
-class Study {
-public:
-    Study(const Options& options)
-        : options_(options),
-          scene_(load_scene(options.scene, options.overrides)),
-          root_(options.output.empty() ? std::filesystem::path("output") / (scene_.name + "_accuracy")
-                                       : options.output) {
-        std::filesystem::create_directories(root_);
-        const std::string as_run = scene_to_toml(scene_);
-        const bool same = std::filesystem::exists(root_ / "scene.toml") &&
-                          read_whole_text(root_ / "scene.toml", largest_csv) == as_run;
-        resumed_ = same && !options.force && std::filesystem::exists(root_ / "reference.bin");
-        if (resumed_ && std::filesystem::exists(csv()))
-            points_ = read_accuracy_csv(read_whole_text(csv(), largest_csv));
-        if (!resumed_) {
-            std::filesystem::remove(csv());
-            std::filesystem::remove(root_ / "reference.bin");
-        }
-        write_whole_file(root_ / "scene.toml", as_run);
-    }
+bool keep_on() {
+    return !InterruptWatch::requested();
+}
 
-    int run() {
-        const auto keep_on = [] { return !InterruptWatch::requested(); };
-        if (resumed_) {
-            std::size_t particles = 0;
-            for (const Cloth& cloth : scene_.cloths)
-                particles += static_cast<std::size_t>(cloth.particles[0]) *
-                             static_cast<std::size_t>(cloth.particles[1]);
-            reference_ = read_reference(root_ / "reference.bin", particles);
-        } else {
-            if (!options_.quiet) fmt::print(stderr, "{}: computing the reference ...\n", scene_.name);
-            reference_ = make_reference(scene_, reference_share * budget(), keep_on);
-            if (InterruptWatch::requested()) return exit_interrupted;
-            write_whole_file(root_ / "reference.bin", reference_bytes(reference_));
-        }
-        if (!options_.quiet) {
-            fmt::print(stderr, "reference: {} at 1/{} s, confirmed to {:.2e} by {} over {:.2f} s\n",
-                       reference_.first.method(), reference_.first.steps_per_frame * scene_.clip.fps,
-                       reference_.floor, reference_.second.method(), window());
-        }
-        run_all_once();
-        repeat();
-        conclude();
-        return InterruptWatch::requested() ? exit_interrupted : exit_done;
-    }
+void draw(const AccuracyStudy& study, CostAxis axis, const std::filesystem::path& stem) {
+    const Plot plot = accuracy_plot(study.points, study.reference, study.scene.name, study.window(), axis);
+    write_whole_file(stem.string() + ".svg", plot_svg(plot));
+    write_png(stem.string() + ".png", plot_image(plot));
+}
 
-private:
-    using Clock = std::chrono::steady_clock;
+std::string caption_of(const AccuracyPoint& point, const AccuracyStudy& study) {
+    return fmt::format("{}, steps of 1/{} s: {:.2g} s per second", point.setting.method(),
+                       point.setting.steps_per_frame * study.scene.clip.fps, point.median() / study.window());
+}
 
-    std::filesystem::path csv() const { return root_ / "accuracy.csv"; }
-    double budget() const { return 60 * options_.budget; }
-    double spent() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-    double window() const { return static_cast<double>(reference_.frames) / scene_.clip.fps; }
-
-    AccuracyPoint* find(const AccuracySetting& setting) {
-        const auto found = std::find_if(points_.begin(), points_.end(),
-                                        [&](const AccuracyPoint& p) { return p.setting == setting; });
-        return found == points_.end() ? nullptr : &*found;
-    }
-
-    // A method's next finer run takes at most about twice the last one's time.
-    double estimate(const AccuracySetting& setting) const {
-        double best = 0;
-        for (const AccuracyPoint& p : points_) {
-            if (p.setting.integrator != setting.integrator) continue;
-            best = p.median() * setting.steps_per_frame / p.setting.steps_per_frame;
-            if (p.setting.method() == setting.method()) return best;
-        }
-        return best;
-    }
-
-    std::optional<AccuracyPoint> measure(const AccuracySetting& setting) {
-        AccuracyRun run =
-            run_setting(scene_, setting, reference_.frames, [] { return !InterruptWatch::requested(); });
-        if (run.stopped) return {};
-        run.point.error = distance(run.trajectory, reference_.trajectory, diagonal_of(scene_));
-        run.point.broke = run.point.broke || !(run.point.error < 1);
-        return std::move(run.point);
-    }
-
-    void run_all_once() {
-        const std::vector<AccuracySetting> grid = accuracy_grid(reference_);
-        Progress progress(scene_.name + " once", static_cast<int>(grid.size()), options_.quiet);
-        int done = 0, free = 0;
-        for (const AccuracySetting& setting : grid) {
-            if (InterruptWatch::requested()) break;
-            progress.show(done++, free);
-            if (find(setting)) {
-                ++free;
-                continue;
-            }
-            if (spent() + estimate(setting) > first_runs_share * budget()) {
-                ++skipped_;
-                continue;
-            }
-            if (std::optional<AccuracyPoint> point = measure(setting)) {
-                points_.push_back(std::move(*point));
-                write_whole_file(csv(), accuracy_csv(points_));
-            }
-        }
-        progress.finish();
-    }
-
-    // Interleaved: each round times every point once, so that a busy spell of the machine falls on all.
-    void repeat() {
-        std::vector<std::size_t> worth;
-        const std::vector<const AccuracyPoint*> front = pareto_front(points_);
-        for (std::size_t k = 0; k < points_.size(); ++k) {
-            const AccuracyPoint& p = points_[k];
-            if (p.broke) continue;
-            double best = p.median();
-            for (const AccuracyPoint* f : front) {
-                if (f->error <= p.error) best = std::min(best, f->median());
-            }
-            if (p.median() <= near_front * best || p.setting.plain()) worth.push_back(k);
-        }
-        Progress progress(scene_.name + " timing", static_cast<int>(wanted_runs * worth.size()),
-                          options_.quiet);
-        int done = static_cast<int>(worth.size());
-        const int free = done;
-        for (std::size_t round = 2; round <= wanted_runs; ++round) {
-            for (const std::size_t k : worth) {
-                progress.show(done++, free);
-                if (InterruptWatch::requested()) break;
-                if (points_[k].seconds.size() >= round || spent() + points_[k].median() > budget()) continue;
-                if (const std::optional<AccuracyPoint> again = measure(points_[k].setting))
-                    points_[k].seconds.push_back(again->seconds.front());
-            }
-            write_whole_file(csv(), accuracy_csv(points_));
-        }
-        progress.finish();
-    }
-
-    void conclude() {
-        const auto draw = [&](CostAxis axis, const std::string& name) {
-            const Plot plot = accuracy_plot(points_, reference_, scene_.name, window(), axis);
-            write_whole_file(root_ / (name + ".svg"), plot_svg(plot));
-            write_png(root_ / (name + ".png"), plot_image(plot));
-        };
-        draw(CostAxis::time, "accuracy");
-        draw(CostAxis::rvm, "accuracy_rvm");
-        write_whole_file(root_ / "accuracy.html", accuracy_page(points_, reference_, scene_.name, window(),
-                                                                scene_.clip.fps, options_.error));
-        const std::string sentence = recommendation(points_, options_.error, window(), scene_.clip.fps);
-        if (options_.json) {
-            nlohmann::ordered_json json{{"scene", scene_.name},      {"points", points_.size()},
-                                        {"skipped", skipped_},       {"window_seconds", window()},
-                                        {"floor", reference_.floor}, {"recommendation", sentence},
-                                        {"folder", root_.string()}};
-            fmt::print("{}\n", json.dump(2));
-        } else if (!options_.quiet) {
-            fmt::print("{}\n{}\n", accuracy_table(points_, reference_, options_.error, scene_.clip.fps),
-                       sentence);
-            if (skipped_ > 0)
-                fmt::print("{} settings did not fit the budget; the same command goes on with them\n",
-                           skipped_);
-            fmt::print("  {}\n  {}\n", (root_ / "accuracy.html").string(), csv().string());
+// The cheapest setting within the error beside the most accurate one, as far into the clip as the budget
+// allows. Empty where there is nothing to compare or nothing to draw with.
+std::string make_video(const AccuracyStudy& study, const Options& options, double budget,
+                       const std::filesystem::path& file) {
+    const std::vector<const AccuracyPoint*> front = pareto_front(study.points);
+    if (front.size() < 2) return "";
+    const AccuracyPoint* accurate = front.back();
+    const AccuracyPoint* cheap = front.front();
+    for (const AccuracyPoint* p : front) {
+        if (p != accurate && p->error <= options.error) {
+            cheap = p;
+            break;
         }
     }
+    const double per_frame = (cheap->median() + accurate->median()) / study.reference.frames;
+    const int frames =
+        std::clamp(static_cast<int>(video_share * budget / std::max(per_frame, 1e-6)), study.reference.frames,
+                   std::max(study.scene.clip.frames() - 1, study.reference.frames));
+    const auto side = [&](const AccuracyPoint& point) {
+        return AccuracySide{run_setting(study.scene, point.setting, frames, keep_on).trajectory,
+                            caption_of(point, study)};
+    };
+    try {
+        write_accuracy_video(study.scene, side(*cheap), side(*accurate), parse_device_choice(options.device),
+                             file, keep_on);
+    } catch (const RendererError& error) {
+        fmt::print(stderr, "no video: {}\n", error.what());
+        return "";
+    } catch (const VideoError& error) {
+        fmt::print(stderr, "no video: {}\n", error.what());
+        return "";
+    }
+    return file.string();
+}
 
-    const Options& options_;
-    Scene scene_;
-    std::filesystem::path root_;
-    AccuracyReference reference_;
-    std::vector<AccuracyPoint> points_;
-    bool resumed_ = false;  ///< the folder held a study of this very scene
-    int skipped_ = 0;
-    Clock::time_point start_ = Clock::now();
-};
+// One scene's study with its plots and its page.
+AccuracyStudy study_scene(const Scene& scene, const std::filesystem::path& folder, double seconds,
+                          const Options& options) {
+    AccuracyStudy study = study_accuracy(scene, folder, {seconds, options.force, options.quiet}, keep_on);
+    if (study.points.empty()) return study;
+    draw(study, CostAxis::time, folder / "accuracy");
+    draw(study, CostAxis::rvm, folder / "accuracy_rvm");
+    write_whole_file(folder / "accuracy.html", accuracy_page(study.points, study.reference, scene.name,
+                                                             study.window(), scene.clip.fps, options.error));
+    if (options.quiet || options.json) return study;
+    fmt::print("{}\n{}\n", accuracy_table(study.points, study.reference, options.error, scene.clip.fps),
+               recommendation(study.points, options.error, study.window(), scene.clip.fps));
+    if (study.skipped > 0)
+        fmt::print("{} settings did not fit the budget; the same command goes on with them\n", study.skipped);
+    return study;
+}
+
+nlohmann::ordered_json summary(const AccuracyStudy& study, const Options& options) {
+    return {{"scene", study.scene.name},
+            {"points", study.points.size()},
+            {"skipped", study.skipped},
+            {"window_seconds", study.window()},
+            {"floor", study.reference.floor},
+            {"recommendation",
+             recommendation(study.points, options.error, study.window(), study.scene.clip.fps)}};
+}
+
+void print_files(const std::vector<std::filesystem::path>& files) {
+    for (const std::filesystem::path& file : files) fmt::print("  {}\n", file.string());
+}
 
 }  // namespace
 
@@ -208,7 +117,47 @@ int command_accuracy(const Options& options) {
                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(threads));
-    return Study(options).run();
+    const Scene scene = load_scene(options.scene, options.overrides);
+    const std::filesystem::path root = options.output.empty()
+                                           ? std::filesystem::path("output") / (scene.name + "_accuracy")
+                                           : options.output;
+    const bool film = options.video != "none", contrast = options.stiffer > 0;
+    const double whole = 60 * options.budget,
+                 each = whole * (film ? 1 - video_share : 1) / (contrast ? 2 : 1);
+
+    const AccuracyStudy study = study_scene(scene, root, each, options);
+    if (study.points.empty()) return exit_interrupted;
+    std::vector<std::filesystem::path> files{root / "accuracy.html", root / "accuracy.png",
+                                             root / "accuracy.csv"};
+    nlohmann::ordered_json json = summary(study, options);
+    json["folder"] = root.string();
+    if (film && keep_on()) {
+        const std::string video = make_video(study, options, whole, root / "cheap_and_accurate.mp4");
+        json["video"] = video;
+        if (!video.empty()) files.emplace_back(video);
+    }
+    if (contrast && keep_on()) {
+        const AccuracyStudy stiff =
+            study_scene(stiffened(scene, options.stiffer), root / "stiffer", each, options);
+        if (!stiff.points.empty()) {
+            const std::string words = contrast_words(study, stiff, options.stiffer);
+            const std::array<Plot, 2> plots = contrast_plots(study, stiff, options.stiffer);
+            write_whole_file(root / "soft_and_stiff.svg", plots_svg(plots));
+            write_png(root / "soft_and_stiff.png", plots_image(plots));
+            write_whole_file(root / "soft_and_stiff.html", contrast_page(study, stiff, options.stiffer));
+            json["stiffer"] = summary(stiff, options);
+            json["soft_and_stiff"] = words;
+            if (!options.quiet && !options.json)
+                fmt::print("{}\n{}\n{}\n", winner_table(study), winner_table(stiff), words);
+            files.push_back(root / "soft_and_stiff.html");
+        }
+    }
+    if (options.json) {
+        fmt::print("{}\n", json.dump(2));
+    } else if (!options.quiet) {
+        print_files(files);
+    }
+    return keep_on() ? exit_done : exit_interrupted;
 }
 
 }  // namespace unravel

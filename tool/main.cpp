@@ -175,6 +175,14 @@ int main(int argc, char** argv) {
     accuracy->add_option("--error", options.error, "to be borne, as a share of the cloth's diagonal")
         ->check(CLI::Range(1e-9, 1.0))
         ->capture_default_str();
+    accuracy->add_option("--stiffer", options.stiffer,
+                         "the same study of a cloth so many times stiffer, and both side by side")
+        ->check(CLI::Range(1.0, 1e6));
+    accuracy->add_option("--video", options.video, "mp4 of a cheap run beside an accurate one, or none")
+        ->check(CLI::IsMember({"mp4", "none"}))
+        ->capture_default_str();
+    accuracy->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
+        ->capture_default_str();
     accuracy
         ->add_option("--threads", options.threads, "threads of the simulation (default: one per processor)")
         ->check(CLI::Range(1, 1024));

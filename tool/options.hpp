@@ -43,6 +43,7 @@ struct Options {
     bool pictures = true;
     double budget = 10;                       ///< --budget, minutes
     double error = 1e-3;                      ///< --error, of the cloth's diagonal
+    double stiffer = 0;                       ///< accuracy: also a cloth so many times stiffer; 0: not
     bool allow_unstable = false;              ///< run although explicit springs are beyond their limit
     std::vector<std::string> runs;            ///< sheet: RUN_DIR[:FRAME]
     std::vector<std::string> cases;           ///< stability: these only

@@ -40,6 +40,18 @@ double bend_force(double length, double rest, double stiffness, double slope) {
     return std::max(arc, slope * (length - rest));
 }
 
+double bend_force_slope(double length, double rest, double stiffness, double slope) {
+    if (length >= rest) return 0;
+    const double scale = 4.0 * stiffness / (rest * rest);
+    if (scale * arc_force(length / rest) < slope * (length - rest)) return slope;
+    // F'(s) = −dF/du
+    const double u = 1.0 - std::clamp(length / rest, 0.0, 1.0);
+    double value = 0;
+    for (std::size_t k = arc_coefficients.size(); k-- > 1;)
+        value = value * u - static_cast<double>(k) * arc_coefficients[k];
+    return scale / rest * value;
+}
+
 double bend_crossing(double rest, double stiffness, double slope) {
     // slope·L·u = −A F(1 − u), A = 4 k_b/L². Both sides are known at u = 0 (0 < 3A); bisection needs no
     // derivative and this runs once per spring and step size.
@@ -97,6 +109,31 @@ void bend_forces(const BendSprings& springs, const BendLimit& limit, std::span<c
         }
         const double length = std::sqrt(squared);
         force[s] = bend_force(length, rest, springs.stiffness[s], limit.slope[s]) / length * d;
+    });
+}
+
+void bend_jacobians(const BendSprings& springs, const BendLimit& limit, std::span<const Vec3> x,
+                    ImplicitBend& out) {
+    if (out.springs.size() != springs.size()) {
+        out.springs.i = springs.i;
+        out.springs.j = springs.j;
+        out.springs.rest = springs.rest;
+        out.springs.stiffness.assign(springs.size(), 0.0);
+        out.springs.damping.assign(springs.size(), 0.0);
+        out.springs.stretch_count = 0;
+        out.forces.resize(springs.size());
+    }
+    bend_forces(springs, limit, x, out.forces.force);
+    parallel_each(springs.size(), [&](std::size_t s) {
+        out.forces.transverse[s] = 0;
+        out.forces.state[s] = SpringState::inactive;
+        if (out.forces.force[s].isZero(0)) return;
+        const Vec3 d = x[springs.j[s]] - x[springs.i[s]];
+        const double length = d.norm();
+        out.forces.direction[s] = d / length;
+        out.forces.state[s] = SpringState::implicit;
+        out.springs.stiffness[s] =
+            bend_force_slope(length, springs.rest[s], springs.stiffness[s], limit.slope[s]);
     });
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/forces/extension.hpp"
 #include "sim/math.hpp"
 
 namespace unravel {
@@ -44,6 +45,9 @@ double arc_energy(double s);
 /// and c_b (l − L); 0 for l ≥ L.
 double bend_force(double length, double rest, double stiffness, double slope);
 
+/// Its slope dT/dl [N/m], ≥ 0; 0 for l ≥ L.
+double bend_force_slope(double length, double rest, double stiffness, double slope);
+
 /// Its energy [J], 0 at l ≥ L; `crossing` as BendLimit says.
 double bend_energy(double length, double rest, double stiffness, double slope, double crossing);
 
@@ -56,5 +60,17 @@ void limit_bend(const BendSprings& springs, std::span<const double> mass, double
 /// Force on each spring's particle i (on j its opposite) [N]. (springs)
 void bend_forces(const BendSprings& springs, const BendLimit& limit, std::span<const Vec3> x,
                  std::span<Vec3> force);
+
+/// Bend springs under a scheme that treats them implicitly, in the linear algebra's terms: the stiffness
+/// along û is the push's slope, the transverse part T/l, which is negative where the spring pushes, is left
+/// out, so that A stays positive definite. Implicit where compressed, inactive elsewhere.
+struct ImplicitBend {
+    ExtensionSprings springs;
+    ExtensionForces forces;  ///< its forces are bend_forces()
+};
+
+/// Fills forces and Jacobians at x. (particles)
+void bend_jacobians(const BendSprings& springs, const BendLimit& limit, std::span<const Vec3> x,
+                    ImplicitBend& out);
 
 }  // namespace unravel

@@ -14,25 +14,31 @@ void ExtensionForces::resize(std::size_t springs) {
 
 void extension_forces(const ExtensionSprings& springs, std::span<const double> mass, std::span<const Vec3> x,
                       std::span<const Vec3> v, double h, const Splitting& splitting, double band,
-                      ExtensionForces& out, std::span<const std::uint8_t> taut) {
+                      ExtensionForces& out, std::span<const std::uint8_t> taut, std::span<const Vec3> ahead) {
     out.resize(springs.size());
     parallel_each(springs.size(), [&](std::size_t s) {
         const std::uint32_t i = springs.i[s], j = springs.j[s];
         const double rest = springs.rest[s];
-        const Vec3 d = x[j] - x[i];
-        const double squared = d.squaredNorm();
-        const bool will_be_taut = !taut.empty() && taut[s] != 0;
-        const double reach = will_be_taut ? 0.0 : (1.0 - band) * rest;
-        if (squared <= reach * reach || squared == 0) {
-            out.force[s].setZero();
-            out.state[s] = SpringState::inactive;
-            return;
-        }
         const double stiffness = springs.stiffness[s], damping = springs.damping[s];
         const double lighter = std::min(mass[i], mass[j]);
         const double threshold =
             s < springs.stretch_count ? splitting.stretch_threshold : splitting.shear_threshold;
         const bool is_explicit = kappa(h, 1.0 / lighter, stiffness, damping) <= threshold;
+        const Vec3 now = x[j] - x[i];
+        const bool looks_ahead = !is_explicit && !ahead.empty();
+        const Vec3 d = looks_ahead ? Vec3(ahead[j] - ahead[i]) : now;
+        const double squared = d.squaredNorm();
+        const bool will_be_taut = !taut.empty() && taut[s] != 0;
+        const double reach = will_be_taut ? 0.0 : (1.0 - band) * rest;
+        // What is taut now and slack ahead still resists: dropped, it would let the next step start
+        // over-taut.
+        const bool out_of_reach =
+            squared <= reach * reach && !(looks_ahead && now.squaredNorm() > reach * reach);
+        if (out_of_reach || squared == 0) {
+            out.force[s].setZero();
+            out.state[s] = SpringState::inactive;
+            return;
+        }
         const double length = std::sqrt(squared);
         if (length <= rest && is_explicit) {
             out.force[s].setZero();

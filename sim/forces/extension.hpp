@@ -56,6 +56,9 @@ struct SpringFamily {
     const ExtensionSprings* springs;
     const Adjacency* adjacency;
     const ExtensionForces* forces;
+    /// (particles) how far a particle moves without the solve from where these springs were evaluated [m];
+    /// empty: as the cloth's.
+    std::span<const Vec3> drift{};
 };
 
 /// Which springs are implicit (paper Sec. 3.5): κ = (h/m)(k_s h + 2 k_d), Eq. (7), m the smaller mass. A
@@ -74,10 +77,13 @@ inline double kappa(double h, double inverse_mass, double stiffness, double damp
 /// that is handled implicitly gets its Jacobian (t = 0) but no force, so that a pull can travel through it
 /// within the step. `taut`, (springs) or empty, marks slack springs that will be taut when the step ends:
 /// handled implicitly, such a spring gets its Jacobian (t = 0) and the force k_s (l − L) + k_d û·(v_j − v_i)
-/// on its line, a push that the linearised end-of-step force outgrows.
+/// on its line, a push that the linearised end-of-step force outgrows. `ahead`, (particles) or empty: where
+/// implicit springs are evaluated instead of at x; one within the band's reach at x but slack there gets its
+/// Jacobian (t = 0) and no force.
 void extension_forces(const ExtensionSprings& springs, std::span<const double> mass, std::span<const Vec3> x,
                       std::span<const Vec3> v, double h, const Splitting& splitting, double band,
-                      ExtensionForces& out, std::span<const std::uint8_t> taut = {});
+                      ExtensionForces& out, std::span<const std::uint8_t> taut = {},
+                      std::span<const Vec3> ahead = {});
 
 /// Marks springs longer than L at `end` (particles) among those inactive in `forces`, or, where `forces` is
 /// empty, among all; keeps earlier marks. True if it marked any that was not.

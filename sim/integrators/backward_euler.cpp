@@ -3,11 +3,14 @@
 namespace unravel {
 
 // Semi-implicit backward Euler (paper Eq. 5; Baraff & Witkin 1998): one linearisation per step.
-const Scheme backward_euler{"implicit", 1,
-                            [](double) {
-                                return Splitting{always_implicit, always_implicit};
-                            },
-                            begin_euler};
+const Scheme backward_euler{.name = "implicit",
+                            .order = 1,
+                            .splitting =
+                                [](double) {
+                                    return Splitting{always_implicit, always_implicit};
+                                },
+                            .begin = begin_euler,
+                            .implicit_bend = true};
 
 void begin_euler(const ClothState& state, double h, Stage& stage) {
     stage.h = h;

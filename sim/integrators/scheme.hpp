@@ -33,6 +33,10 @@ struct Scheme {
     void (*begin)(const ClothState& state, double h, Stage& stage);
     bool iterates = false;   ///< linearises again until (x*, v*) is the end of the step (Newton)
     bool multistep = false;  ///< reads the state's x_previous, v_previous and h_previous
+    /// h²λ + 2hμ that explicit springs may reach, λ and μ eigenvalues of M⁻¹K and M⁻¹D; see
+    /// explicit_limit.hpp.
+    double explicit_bound = 4;
+    bool implicit_bend = false;  ///< bend springs get their Jacobian too (Choi & Ko 2002; see bend.hpp)
 };
 
 /// The scheme of a choice.

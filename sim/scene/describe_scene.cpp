@@ -10,7 +10,8 @@ constexpr std::string_view integrators[] = {"explicit",      "implicit", "newton
 constexpr std::string_view preconditioners[] = {"none", "diagonal", "block", "constrained-block",
                                                 "ssor", "ic0", "auto", "stencil-block", "multigrid"};
 
-constexpr std::string_view activations[] = {"start", "predicted", "resolve"};
+constexpr std::string_view bend_treatments[] = {"scheme", "explicit"};
+constexpr std::string_view activations[] = {"start", "predicted", "resolve", "ahead"};
 
 }  // namespace
 
@@ -53,9 +54,12 @@ void describe(Fields& f, Solver& solver) {
     f.integer({"max_iterations", "of the conjugate gradients, per component"}, solver.max_iterations, 1,
               10'000'000);
     f.flag({"decompose", "solve each component of implicitly coupled particles by itself"}, solver.decompose);
-    f.choice(
-        {"activation", "when a slack spring acts: next step, where predicted taut, or in a second solve"},
-        solver.activation, activations);
+    f.choice({"bend", "bend springs as the integrator has them (implicit, newton: implicitly), or explicit"},
+             solver.bend, bend_treatments);
+    f.choice({"activation",
+              "when a slack spring acts: next step, where predicted taut, in a second solve, or as "
+              "linearised ahead"},
+             solver.activation, activations);
     f.number({"activation_band", "springs this share below their rest length already get their Jacobian"},
              solver.activation_band, {0, 0.5});
     f.optional_table({"adaptive", "step size chosen while running; absent: fixed"}, solver.adaptive,

@@ -149,10 +149,16 @@ enum class Preconditioner {
     multigrid
 };
 
+/// How bend springs are treated: as the integrator has it (implicitly by implicit and newton), or explicitly
+/// by all.
+enum class BendTreatment { scheme, explicit_ };
+
 /// When a spring that is slack at the start of a step begins to act within it: not before the next step
-/// (start), where the last step's motion carried on would make it taut (predicted), or where the solution
-/// does, in a second solve (resolve).
-enum class Activation { start, predicted, resolve };
+/// (start); where the last step's motion carried on would make it taut (predicted); where the solution does,
+/// in a second solve (resolve); or where it is taut at x + h v, at which implicit springs are then linearised
+/// (ahead): the first iteration of Newton's method for backward Euler, begun where the step would end without
+/// forces.
+enum class Activation { start, predicted, resolve, ahead };
 
 /// Step size chosen while running; a rejected step is undone exactly.
 struct AdaptiveStep {
@@ -170,6 +176,7 @@ struct Solver {
     double tolerance = 1e-3;    ///< relative preconditioned residual
     int max_iterations = 2000;  ///< of CG, per component
     bool decompose = true;      ///< false: one system over all particles
+    BendTreatment bend = BendTreatment::scheme;
     Activation activation = Activation::predicted;
     double activation_band = 0.0;  ///< springs with l > (1 − band) L get their Jacobian, but no force
     std::optional<AdaptiveStep> adaptive;  ///< absent: every step is `step`

@@ -111,3 +111,18 @@ TEST_CASE("bend forces push coincident ends nowhere, and are finite at every len
         CHECK(force[0].y() <= 0);
     }
 }
+
+TEST_CASE("bend force's slope is its derivative on either side of the crossing and never negative") {
+    const double rest = 0.04, stiffness = 6e-8, slope = 0.6;
+    const double crossing = bend_crossing(rest, stiffness, slope), d = 1e-6 * rest;
+    for (int k = 1; k < 200; ++k) {
+        const double length = rest * k / 200.0;
+        if (std::abs(length - crossing) < 2 * d) continue;
+        const double difference = (bend_force(length + d, rest, stiffness, slope) -
+                                   bend_force(length - d, rest, stiffness, slope)) /
+                                  (2 * d);
+        CHECK(bend_force_slope(length, rest, stiffness, slope) == Approx(difference).epsilon(1e-4));
+        CHECK(bend_force_slope(length, rest, stiffness, slope) >= 0);
+    }
+    CHECK(bend_force_slope(rest, rest, stiffness, slope) == 0);
+}

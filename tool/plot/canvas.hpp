@@ -36,6 +36,8 @@ public:
     /// Only what lies in the rectangle is drawn, until unclip().
     void clip(double x, double y, double w, double h);
     void unclip() { cairo_restore(cr_); }
+    /// What follows is drawn from this origin on.
+    void move_origin(double x, double y) { cairo_translate(cr_, x, y); }
     void font(double size, bool bold = false);
     void text(double x, double y, const std::string& text, Align align = Align::start);
     void text_upwards(double x, double y, const std::string& text);  ///< turned by 90°, centred on (x, y)

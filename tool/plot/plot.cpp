@@ -292,15 +292,41 @@ private:
     double left_ = 0, right_ = 0, top_ = 0, bottom_ = 0;
 };
 
+// Drawn one after the other to the right.
+template <typename Make>
+auto draw_row(std::span<const Plot> plots, const Make& make) {
+    int width = 0, height = 0;
+    for (const Plot& plot : plots) {
+        width += plot.width;
+        height = std::max(height, plot.height);
+    }
+    return make(width, height, [&](Canvas& canvas) {
+        for (const Plot& plot : plots) {
+            Drawing(plot, canvas).draw();
+            canvas.move_origin(plot.width, 0);
+        }
+    });
+}
+
 }  // namespace
 
+std::string plots_svg(std::span<const Plot> plots) {
+    return draw_row(plots,
+                    [](int width, int height, const auto& draw) { return canvas_svg(width, height, draw); });
+}
+
+Image plots_image(std::span<const Plot> plots, double scale) {
+    return draw_row(plots, [scale](int width, int height, const auto& draw) {
+        return canvas_image(width, height, scale, draw);
+    });
+}
+
 std::string plot_svg(const Plot& plot) {
-    return canvas_svg(plot.width, plot.height, [&](Canvas& canvas) { Drawing(plot, canvas).draw(); });
+    return plots_svg({&plot, 1});
 }
 
 Image plot_image(const Plot& plot, double scale) {
-    return canvas_image(plot.width, plot.height, scale,
-                        [&](Canvas& canvas) { Drawing(plot, canvas).draw(); });
+    return plots_image({&plot, 1}, scale);
 }
 
 }  // namespace unravel

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,10 @@ struct Plot {
     double bar_width = 0;  ///< of all bars at one x together, in units of x; 0: from how near they stand
     int width = 720, height = 440;
 };
+
+/// Plots side by side as one SVG document, and as a picture.
+std::string plots_svg(std::span<const Plot> plots);
+Image plots_image(std::span<const Plot> plots, double scale = 2);
 
 /// The plot as an SVG document.
 std::string plot_svg(const Plot& plot);

@@ -90,12 +90,15 @@ Claim preconditioner_claim(const ReproduceScale& scale) {
                                            {"partly_constrained_share", largest.partly}});
     }
     const double saved = 1 - largest.mean[2] / largest.mean[0], c_ratio = largest.mean[1] / largest.mean[0];
+    const double saved_of_block = 1 - largest.mean[2] / largest.mean[1];
     claim.ours = fmt::format(
         "At n = {:.0f}: {:.1f} iterations without, {:.1f} with C, {:.1f} with P: P needs {:.0f}% {} "
-        "than none, C {:.0f}% {}. Means over {} systems of a drape on a sphere, each solved by all "
+        "than none and {:.0f}% {} than C; C needs {:.0f}% {} than none. Means over {} systems of a drape on "
+        "a sphere, each solved by all "
         "three from the same guess under one stopping rule.",
         largest.particles, largest.mean[0], largest.mean[1], largest.mean[2], 100 * std::abs(saved),
-        saved >= 0 ? "fewer" : "more", 100 * std::abs(c_ratio - 1), c_ratio > 1 ? "more" : "fewer", systems);
+        saved >= 0 ? "fewer" : "more", 100 * std::abs(saved_of_block), saved_of_block >= 0 ? "fewer" : "more",
+        100 * std::abs(c_ratio - 1), c_ratio > 1 ? "more" : "fewer", systems);
     if (c_ratio <= 1 || saved < 0.25 || saved > 0.35) {
         claim.why = fmt::format(
             "The paper does not name its scene. C and P differ only where constraints mix directions that "
@@ -107,6 +110,7 @@ Claim preconditioner_claim(const ReproduceScale& scale) {
                       "./run simulate scenes/drape_sphere.toml --set solver.preconditioner=none --set "
                       "solver.decompose=false -o output/none"};
     claim.numbers["saved_by_P"] = saved;
+    claim.numbers["saved_by_P_against_C"] = saved_of_block;
     claim.figures.push_back({"fig9", "As the paper's Fig. 9.", plot_svg(plot), plot_image(plot), true});
     return claim;
 }

@@ -19,11 +19,12 @@ struct AccuracySetting {
     int steps_per_frame = 1;
     double threshold = 0.2;   ///< of the adaptive schemes
     double tolerance = 1e-3;  ///< of CG
-    Activation activation = Activation::predicted;
-    double band = 0;
+    Activation activation = Solver{}.activation;
+    double band = Solver{}.activation_band;
+    BendTreatment bend = BendTreatment::scheme;
     /// "adaptive-imex", "adaptive-imex threshold 0.05": all but the step, by which curves are drawn.
     std::string method() const;
-    /// Neither threshold, tolerance nor activation departs from what all methods have in common.
+    /// Neither threshold, tolerance, activation nor bending departs from what all methods have in common.
     bool plain() const;
     bool operator==(const AccuracySetting&) const = default;
 };

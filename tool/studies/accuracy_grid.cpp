@@ -15,7 +15,8 @@ namespace {
 constexpr Integrator integrators[] = {
     Integrator::explicit_,      Integrator::implicit, Integrator::adaptive_imex, Integrator::bdf2,
     Integrator::adaptive_imex2, Integrator::imex,     Integrator::newton};
-constexpr const char* activations[] = {"start", "predicted", "resolve"};
+constexpr const char* activations[] = {"start", "predicted", "resolve", "ahead"};
+constexpr const char* bend_treatments[] = {"scheme", "explicit"};
 
 const AccuracySetting common;
 
@@ -34,7 +35,8 @@ void add(std::vector<AccuracySetting>& grid, AccuracySetting setting, const std:
 }
 
 constexpr std::string_view header =
-    "integrator,steps_per_frame,threshold,tolerance,activation,band,broke,error,max_strain,lowest,energy,"
+    "integrator,steps_per_frame,threshold,tolerance,activation,band,bend,broke,error,max_strain,lowest,"
+    "energy,"
     "steps,rvm,"
     "median_seconds,fastest_seconds,slowest_seconds,runs,seconds";
 
@@ -58,14 +60,18 @@ bool parse_point(const std::vector<std::string_view>& cells, AccuracyPoint& p) {
     const auto* scheme = std::find_if(std::begin(integrators), std::end(integrators),
                                       [&](Integrator i) { return cells[0] == scheme_of(i).name; });
     const auto* activation = std::find(std::begin(activations), std::end(activations), cells[4]);
+    const auto* bend = std::find(std::begin(bend_treatments), std::end(bend_treatments), cells[6]);
     int broke = 0;
-    if (scheme == std::end(integrators) || activation == std::end(activations)) return false;
+    if (scheme == std::end(integrators) || activation == std::end(activations) ||
+        bend == std::end(bend_treatments))
+        return false;
     s.integrator = *scheme;
     s.activation = static_cast<Activation>(activation - std::begin(activations));
+    s.bend = static_cast<BendTreatment>(bend - std::begin(bend_treatments));
     bool good = parse(cells[1], s.steps_per_frame) && parse(cells[2], s.threshold) &&
-                parse(cells[3], s.tolerance) && parse(cells[5], s.band) && parse(cells[6], broke) &&
-                parse(cells[7], p.error) && parse(cells[8], p.max_strain) && parse(cells[9], p.lowest) &&
-                parse(cells[10], p.energy) && parse(cells[11], p.steps) && parse(cells[12], p.rvm);
+                parse(cells[3], s.tolerance) && parse(cells[5], s.band) && parse(cells[7], broke) &&
+                parse(cells[8], p.error) && parse(cells[9], p.max_strain) && parse(cells[10], p.lowest) &&
+                parse(cells[11], p.energy) && parse(cells[12], p.steps) && parse(cells[13], p.rvm);
     p.broke = broke != 0;
     for (const std::string_view text : split(cells.back(), ' ')) {
         p.seconds.push_back(0);
@@ -83,32 +89,44 @@ std::string AccuracySetting::method() const {
     if (activation != common.activation)
         text += fmt::format(", {} activation", activations[static_cast<int>(activation)]);
     if (band != common.band) text += fmt::format(", band {}", band);
+    if (bend != common.bend) text += ", explicit bend";
     return text;
 }
 
 bool AccuracySetting::plain() const {
     return threshold == common.threshold && tolerance == common.tolerance &&
-           activation == common.activation && band == common.band;
+           activation == common.activation && band == common.band && bend == common.bend;
 }
 
 std::vector<AccuracySetting> accuracy_grid(const AccuracyReference& reference) {
     const int finest = reference.first.steps_per_frame;
     std::vector<AccuracySetting> grid;
+    const auto variant = [](Integrator integrator, const auto& change) {
+        AccuracySetting setting = common;
+        setting.integrator = integrator;
+        change(setting);
+        return setting;
+    };
     for (const Integrator integrator : integrators) {
-        const bool is_explicit = integrator == Integrator::explicit_;
-        add(grid, {integrator, 1, common.threshold, common.tolerance, common.activation, common.band},
-            is_explicit ? ladder(4, 256, finest) : ladder(1, 64, finest));
+        add(grid, variant(integrator, [](AccuracySetting&) {}),
+            integrator == Integrator::explicit_ ? ladder(4, 256, finest) : ladder(1, 64, finest));
     }
     const std::vector<int> few = ladder(2, 16, finest), wide = ladder(4, 64, finest);
-    for (const Activation activation : {Activation::start, Activation::resolve})
-        add(grid, {Integrator::adaptive_imex, 1, common.threshold, common.tolerance, activation, 0}, few);
-    add(grid, {Integrator::adaptive_imex, 1, common.threshold, common.tolerance, common.activation, 0.02},
+    for (std::size_t k = 0; k < std::size(activations); ++k) {
+        add(grid,
+            variant(Integrator::adaptive_imex,
+                    [k](AccuracySetting& s) { s.activation = static_cast<Activation>(k); }),
+            few);
+    }
+    for (const double band : {0.0, 0.02, 0.1})
+        add(grid, variant(Integrator::adaptive_imex, [band](AccuracySetting& s) { s.band = band; }), few);
+    add(grid, variant(Integrator::implicit, [](AccuracySetting& s) { s.bend = BendTreatment::explicit_; }),
         few);
     for (const Integrator adaptive : {Integrator::adaptive_imex, Integrator::adaptive_imex2}) {
-        for (const double threshold : {0.05, 0.5})
-            add(grid, {adaptive, 1, threshold, common.tolerance, common.activation, common.band}, wide);
+        for (const double threshold : {0.05, 0.4})
+            add(grid, variant(adaptive, [&](AccuracySetting& s) { s.threshold = threshold; }), wide);
         for (const double tolerance : {1e-1, 1e-2, 1e-5})
-            add(grid, {adaptive, 1, common.threshold, tolerance, common.activation, common.band}, {4, 16});
+            add(grid, variant(adaptive, [&](AccuracySetting& s) { s.tolerance = tolerance; }), {4, 16});
     }
     return grid;
 }
@@ -117,11 +135,12 @@ std::string accuracy_csv(const std::vector<AccuracyPoint>& points) {
     std::string csv = std::string(header) + "\n";
     for (const AccuracyPoint& p : points) {
         const AccuracySetting& s = p.setting;
-        csv += fmt::format("{},{},{},{},{},{},{:d},{},{},{},{},{},{},{:.6f},{:.6f},{:.6f},{},",
-                           scheme_of(s.integrator).name, s.steps_per_frame, s.threshold, s.tolerance,
-                           activations[static_cast<int>(s.activation)], s.band, p.broke, p.error,
-                           p.max_strain, p.lowest, p.energy, p.steps, p.rvm, p.median(), p.fastest(),
-                           p.slowest(), p.seconds.size());
+        csv +=
+            fmt::format("{},{},{},{},{},{},{},{:d},{},{},{},{},{},{},{:.6f},{:.6f},{:.6f},{},",
+                        scheme_of(s.integrator).name, s.steps_per_frame, s.threshold, s.tolerance,
+                        activations[static_cast<int>(s.activation)], s.band,
+                        bend_treatments[static_cast<int>(s.bend)], p.broke, p.error, p.max_strain, p.lowest,
+                        p.energy, p.steps, p.rvm, p.median(), p.fastest(), p.slowest(), p.seconds.size());
         for (std::size_t k = 0; k < p.seconds.size(); ++k)
             csv += fmt::format("{}{:.6f}", k ? " " : "", p.seconds[k]);
         csv += '\n';

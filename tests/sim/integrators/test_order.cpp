@@ -113,6 +113,34 @@ Problem trampoline() {
     return p;
 }
 
+// A zigzag of taut springs with bend springs in compression from each particle to the next but one: bending
+// that never lets go, where what a scheme makes of it is seen.
+Problem zigzag() {
+    Problem p;
+    p.duration = 0.2;
+    constexpr int count = 7;
+    for (int k = 0; k < count; ++k) {
+        p.model.mass.push_back(0.1);
+        p.start.x.emplace_back(0.1 * k, k % 2 ? 0.04 : 0.0, 0.002 * k * k);
+        p.start.v.emplace_back(0, 0, 0);
+        if (k > 0)
+            add_spring(p, static_cast<std::uint32_t>(k - 1), static_cast<std::uint32_t>(k), 0.085, 60, 0.02);
+    }
+    pin(p, 0);
+    pin(p, count - 1);
+    finish(p);
+    BendSprings& bends = p.model.bends;
+    for (std::uint32_t k = 0; k + 2 < count; ++k) {
+        bends.i.push_back(k);
+        bends.j.push_back(k + 2);
+        bends.rest.push_back(0.24);
+        bends.stiffness.push_back(4e-3);
+        bends.slope.push_back(5);
+    }
+    p.model.bend_adjacency = adjacency_of(p.start.x.size(), bends.i, bends.j);
+    return p;
+}
+
 std::vector<Vec3> accelerations(const Problem& p, const std::vector<Vec3>& x, const std::vector<Vec3>& v) {
     std::vector<Vec3> a(x.size(), p.model.gravity);
     const auto push = [&](std::uint32_t i, std::uint32_t j, const Vec3& f) {
@@ -194,7 +222,7 @@ double observed_order(const Problem& p, Integrator integrator, const std::vector
     const double coarse = distance(integrate(p, options, steps, pattern), exact);
     const double fine = distance(integrate(p, options, 2 * steps, pattern), exact);
     INFO(scheme_of(integrator).name << ": " << coarse << " " << fine);
-    CHECK(fine > 1e-10);  // above the solver's own error, or the order says nothing
+    CHECK(fine > 1e-11);  // above the solver's own error, or the order says nothing
     return std::log2(coarse / fine);
 }
 
@@ -202,12 +230,13 @@ constexpr Integrator schemes[] = {Integrator::explicit_,     Integrator::implici
                                   Integrator::imex,          Integrator::bdf2,     Integrator::adaptive_imex,
                                   Integrator::adaptive_imex2};
 
-void require_orders(const Problem& p, const std::vector<Vec3>& exact, int steps,
-                    const std::vector<double>& pattern = {1.0}) {
+void require_orders(const Problem& p, const std::vector<Vec3>& exact, int steps, bool all_explicit = false) {
     for (const Integrator integrator : schemes) {
-        const double order = observed_order(p, integrator, exact, steps, pattern);
+        const double order = observed_order(p, integrator, exact, steps);
         INFO(scheme_of(integrator).name);
-        CHECK(order == Approx(scheme_of(integrator).order).margin(0.15));
+        // The pair's explicit springs have their frequency right to fourth order and lose swing in the third.
+        const bool better = all_explicit && integrator == Integrator::adaptive_imex2;
+        CHECK(order == Approx(better ? 3 : scheme_of(integrator).order).margin(0.15));
     }
 }
 
@@ -215,7 +244,7 @@ void require_orders(const Problem& p, const std::vector<Vec3>& exact, int steps,
 
 TEST_CASE("halving_h_divides_the_error_by_two_to_the_order_on_a_chain") {
     const Problem p = chain();
-    require_orders(p, chain_at(p.duration), 2000);
+    require_orders(p, chain_at(p.duration), 2000, true);
 }
 
 TEST_CASE("halving_h_divides_the_error_by_two_to_the_order_on_a_pendulum_of_springs") {
@@ -230,6 +259,33 @@ TEST_CASE("halving_h_divides_the_error_by_two_to_the_order_on_a_trampoline") {
     const std::vector<Vec3> exact = runge_kutta(p, 4000);
     REQUIRE(distance(exact, runge_kutta(p, 2000)) < 1e-10);
     require_orders(p, exact, 800);
+}
+
+TEST_CASE("halving_h_divides_the_error_by_two_to_the_order_on_a_zigzag_of_bend_springs") {
+    const Problem p = zigzag();
+    const std::vector<Vec3> exact = runge_kutta(p, 4000);
+    REQUIRE(distance(exact, runge_kutta(p, 2000)) < 1e-10);
+    require_orders(p, exact, 800);
+}
+
+// Bend springs are edges of the implicit schemes' system, and of no other's.
+TEST_CASE("implicit_and_newton_treat_bend_springs_implicitly_unless_told_not_to") {
+    const Problem p = zigzag();
+    const auto implicit_springs = [&](Integrator integrator, BendTreatment bend) {
+        StepOptions options = options_of(integrator);
+        options.bend = bend;
+        ClothState state = initial_state(p.start);
+        StepWorkspace ws;
+        return step(p.model, options, 1e-3, state, ws).implicit;
+    };
+    const auto stretch = static_cast<std::uint32_t>(p.model.springs.size()),
+               all = static_cast<std::uint32_t>(p.model.springs.size() + p.model.bends.size());
+    for (const Integrator integrator : {Integrator::implicit, Integrator::newton}) {
+        CHECK(implicit_springs(integrator, BendTreatment::scheme) == all);
+        CHECK(implicit_springs(integrator, BendTreatment::explicit_) == stretch);
+    }
+    CHECK(implicit_springs(Integrator::bdf2, BendTreatment::scheme) == stretch);
+    CHECK(implicit_springs(Integrator::imex, BendTreatment::scheme) == stretch);
 }
 
 // Growing and shrinking steps within a run: a multistep scheme that ignored the change would fall to order 1.
@@ -254,16 +310,20 @@ TEST_CASE("split_step_tends_to_implicit_step") {
     CHECK(fine < coarse / 3);  // first order: a fourth, less what is left of the second
 }
 
-// Without a threshold nothing is explicit, and the adaptive schemes are the all-implicit ones, bit for bit.
+// Without a threshold no stretch or shear spring is explicit, and but for bending the adaptive schemes are
+// the all-implicit ones, bit for bit.
 TEST_CASE("adaptive_schemes_with_threshold_zero_are_the_implicit_ones") {
     const Problem p = trampoline();
-    const auto with = [&](Integrator integrator) {
+    const auto with = [&](Integrator integrator, BendTreatment bend) {
         StepOptions options = options_of(integrator);
         options.threshold = 0;
+        options.bend = bend;
         return integrate(p, options, 25);
     };
-    CHECK(with(Integrator::adaptive_imex) == with(Integrator::implicit));
-    CHECK(with(Integrator::adaptive_imex2) == with(Integrator::bdf2));
+    CHECK(with(Integrator::adaptive_imex, BendTreatment::scheme) ==
+          with(Integrator::implicit, BendTreatment::explicit_));
+    CHECK(with(Integrator::adaptive_imex2, BendTreatment::scheme) ==
+          with(Integrator::bdf2, BendTreatment::scheme));
 }
 
 // Forward–backward Euler as Eq. (3) has it, written down once more.
@@ -282,14 +342,14 @@ TEST_CASE("explicit_step_is_forward_backward_euler") {
     CHECK(distance(x, integrate(p, options_of(Integrator::explicit_), 100)) < 1e-13);
 }
 
-// Right below the threshold all springs are explicit, and their fastest modes must not grow: extrapolated
-// positions would feed them by 12% a step.
-TEST_CASE("explicit_half_of_the_second_order_pair_is_stable_up_to_its_threshold") {
+// The fastest mode of a chain has h²ω² = 4κ. Near the stated limit of 3.2 every spring is explicit and no
+// mode may grow: SBDF2's own extrapolation feeds them at any step.
+TEST_CASE("explicit_half_of_the_second_order_pair_is_stable_up_to_its_limit") {
     Problem p = chain();
-    const double h = std::sqrt(0.199 * chain_mass / chain_stiffness);
+    const double h = std::sqrt(0.79 * chain_mass / chain_stiffness);
     for (std::size_t k = 1; k <= chain_masses; ++k) p.start.x[k].x() += k % 2 ? 0.001 : -0.001;
     StepOptions options = options_of(Integrator::adaptive_imex2);
-    options.threshold = 0.2;
+    options.threshold = 0.8;
     ClothState state = initial_state(p.start);
     StepWorkspace ws;
     for (int n = 0; n < 2000; ++n) {
