@@ -115,7 +115,12 @@ std::vector<AccuracySetting> accuracy_grid(const AccuracyReference& reference) {
     for (std::size_t k = 0; k < std::size(activations); ++k) {
         add(grid,
             variant(Integrator::adaptive_imex,
-                    [k](AccuracySetting& s) { s.activation = static_cast<Activation>(k); }),
+                    [k](AccuracySetting& s) {
+                        s.activation = static_cast<Activation>(k);
+                        // Without a band a cloth in balance, taut now and slack ahead by turns, is let go and
+                        // caught.
+                        if (s.activation == Activation::ahead) s.band = 0.02;
+                    }),
             few);
     }
     for (const double band : {0.0, 0.02, 0.1})
