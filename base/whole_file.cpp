@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <system_error>
@@ -31,11 +32,22 @@ private:
     int number_;
 };
 
-// Hidden, so that nothing that looks for frames by their names meets it; with the process's number, so that
-// two runs that were pointed at one folder by mistake can't mix their bytes.
+// A number for this machine, so that equal process numbers on two of them are told apart.
+std::uint32_t machine_number() {
+    std::array<char, 256> name{};
+    ::gethostname(name.data(), name.size() - 1);
+    std::uint32_t number = 2166136261;  // FNV-1a
+    for (const char* c = name.data(); *c != 0; ++c)
+        number = (number ^ static_cast<unsigned char>(*c)) * 16777619;
+    return number;
+}
+
+// Hidden, so that nothing that looks for frames by their names meets it; with numbers of process and machine,
+// so that two runs that work in one folder, or are done twice, can't mix their bytes.
 fs::path partial_path(const fs::path& target) {
+    static const std::uint32_t machine = machine_number();
     return target.parent_path() /
-           fmt::format(".{}.{}{}", target.filename().string(), ::getpid(), partial_ending);
+           fmt::format(".{}.{}{:010}{}", target.filename().string(), ::getpid(), machine, partial_ending);
 }
 
 // True for .NAME.DIGITS.part

@@ -29,6 +29,8 @@ struct ClipOptions {
     int crf = -1;
     bool reuse_pictures = false;  ///< frames whose picture lies there already are read, not drawn
     bool keep_pictures = true;    ///< write PNG frames
+    bool shares_folder = false;   ///< other ranges of frames are drawn into the folder at the same time
+    bool vouched = false;         ///< what lies there is this clip's: its stamp is not asked for
     /// Called with every finished picture, by several threads at once; empty: nobody looks.
     std::function<void(const ClipView& view, int frame, const Image& picture)> picture;
 };

@@ -16,6 +16,7 @@
 #include "tool/interrupt.hpp"
 #include "tool/options.hpp"
 #include "tool/studies/accuracy_contrast.hpp"
+#include "tool/studies/accuracy_points.hpp"
 #include "tool/studies/accuracy_study.hpp"
 #include "tool/studies/accuracy_verdict.hpp"
 #include "tool/studies/accuracy_video.hpp"
@@ -77,21 +78,22 @@ std::string make_video(const AccuracyStudy& study, const Options& options, doubl
     return file.string();
 }
 
-// One scene's study with its plots and its page.
-AccuracyStudy study_scene(const Scene& scene, const std::filesystem::path& folder, double seconds,
-                          const Options& options) {
-    AccuracyStudy study = study_accuracy(scene, folder, {seconds, options.force, options.quiet}, keep_on);
-    if (study.points.empty()) return study;
+// The plots and the page of a study, and what it says in words. False: points had to be left out of it,
+// because they were timed on another processor than most.
+bool conclude(AccuracyStudy& study, const std::filesystem::path& folder, const Options& options) {
+    const std::string left_out = leave_out_other_processors(study.points);
     draw(study, CostAxis::time, folder / "accuracy");
     draw(study, CostAxis::rvm, folder / "accuracy_rvm");
+    const Scene& scene = study.scene;
     write_whole_file(folder / "accuracy.html", accuracy_page(study.points, study.reference, scene.name,
                                                              study.window(), scene.clip.fps, options.error));
-    if (options.quiet || options.json) return study;
+    if (!left_out.empty()) fmt::print(stderr, "unravel: {}\n", left_out);
+    if (options.quiet || options.json) return left_out.empty();
     fmt::print("{}\n{}\n", accuracy_table(study.points, study.reference, options.error, scene.clip.fps),
                recommendation(study.points, options.error, study.window(), scene.clip.fps));
     if (study.skipped > 0)
         fmt::print("{} settings did not fit the budget; the same command goes on with them\n", study.skipped);
-    return study;
+    return left_out.empty();
 }
 
 nlohmann::ordered_json summary(const AccuracyStudy& study, const Options& options) {
@@ -124,9 +126,27 @@ int command_accuracy(const Options& options) {
     const bool film = options.video != "none", contrast = options.stiffer > 0;
     const double whole = 60 * options.budget,
                  each = whole * (film ? 1 - video_share : 1) / (contrast ? 2 : 1);
+    const AccuracyBudget budget{each, options.force, options.quiet};
 
-    const AccuracyStudy study = study_scene(scene, root, each, options);
-    if (study.points.empty()) return exit_interrupted;
+    if (options.cluster.submit || options.collect || options.point >= 0 || options.reference) {
+        if (contrast)
+            throw UsageError("--stiffer compares two studies on one machine: a cluster takes one at a time");
+        if (options.cluster.submit)
+            return do_on_cluster(options, accuracy_cluster_work(scene, root, options.force));
+        if (options.reference)
+            return study_reference(scene, root, budget, keep_on) ? exit_done : exit_interrupted;
+        if (options.point >= 0)
+            return time_accuracy_point(scene, root, options.point, keep_on) ? exit_done : exit_interrupted;
+    }
+
+    std::string missing;
+    AccuracyStudy study = options.collect ? collect_accuracy(scene, root, missing)
+                                          : study_accuracy(scene, root, budget, keep_on);
+    if (study.points.empty() && missing.empty()) return exit_interrupted;
+    const bool same_processor = study.points.empty() || conclude(study, root, options);
+    if (!missing.empty())
+        throw MissingPieces("points are missing:" + missing +
+                            "\nthe same command sends them again and keeps the rest");
     std::vector<std::filesystem::path> files{root / "accuracy.html", root / "accuracy.png",
                                              root / "accuracy.csv"};
     nlohmann::ordered_json json = summary(study, options);
@@ -137,9 +157,10 @@ int command_accuracy(const Options& options) {
         if (!video.empty()) files.emplace_back(video);
     }
     if (contrast && keep_on()) {
-        const AccuracyStudy stiff =
-            study_scene(stiffened(scene, options.stiffer), root / "stiffer", each, options);
+        AccuracyStudy stiff =
+            study_accuracy(stiffened(scene, options.stiffer), root / "stiffer", budget, keep_on);
         if (!stiff.points.empty()) {
+            conclude(stiff, root / "stiffer", options);
             const std::string words = contrast_words(study, stiff, options.stiffer);
             const std::array<Plot, 2> plots = contrast_plots(study, stiff, options.stiffer);
             write_whole_file(root / "soft_and_stiff.svg", plots_svg(plots));
@@ -157,7 +178,8 @@ int command_accuracy(const Options& options) {
     } else if (!options.quiet) {
         print_files(files);
     }
-    return keep_on() ? exit_done : exit_interrupted;
+    if (!keep_on()) return exit_interrupted;
+    return same_processor ? exit_done : exit_simulation;
 }
 
 }  // namespace unravel

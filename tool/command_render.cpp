@@ -10,6 +10,7 @@
 #include "sim/stats.hpp"
 #include "tool/clip.hpp"
 #include "tool/folder_lock.hpp"
+#include "tool/frame_ranges.hpp"
 #include "tool/interrupt.hpp"
 #include "tool/options.hpp"
 #include "tool/progress.hpp"
@@ -77,10 +78,20 @@ int command_render(const Options& options) {
     const int still = options.still >= 0 ? options.still : scene.clip.frames() - 1;
     if (turns) make_turntable(scene, clip_options, options.turntable, still);
     const RunFolder folder{options.output.empty() ? cached.root : options.output};
+    if (turns && (options.cluster.submit || options.collect || options.point >= 0))
+        throw UsageError("--turntable is drawn on one machine: it does not go with --slurm");
+    if (options.cluster.submit) return send_ranges(options, scene, cached, folder, clip_options);
+    const bool range_only = options.point >= 0;
+    if (range_only) narrow_to_range(options, clip_options);
+    if (options.collect) gather_ranges(options, scene, folder, clip_options);
     check_clip(scene, folder, clip_options);
-    const FolderLock lock(folder.root);
     std::filesystem::create_directories(folder.frames());
-    remove_partial_files(folder.frames());
+    // Tasks with other ranges write there at the same time: they own no more than their pictures.
+    std::optional<FolderLock> lock;
+    if (!range_only) {
+        lock.emplace(folder.root);
+        remove_partial_files(folder.frames());
+    }
 
     Placement placement;
     const ClothModel model = build_model(scene, placement);
@@ -114,6 +125,11 @@ int command_render(const Options& options) {
     const ClipReport report = make_clip(scene, model, placement, folder, clip_options, source,
                                         [&](int frame) { progress.show(frame - clip_options.first + 1, 0); });
     progress.finish();
+    if (range_only) {
+        if (last < clip_options.last)
+            throw FolderError(fmt::format("'{}' holds no usable frame {}", cached.root.string(), last + 1));
+        return InterruptWatch::requested() ? exit_interrupted : exit_done;
+    }
     // The page shows the whole run, also where only some frames were drawn anew.
     while (next < frames) read();
     if (std::filesystem::exists(cached.stats()))

@@ -1,4 +1,4 @@
-// unravel run SCENE and unravel simulate SCENE: the main job, with and without pictures.
+// unravel run SCENE ... and unravel simulate SCENE ...: the main job, with and without pictures.
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -20,6 +20,7 @@
 #include "tool/report/page.hpp"
 #include "tool/run_json.hpp"
 #include "tool/run_source.hpp"
+#include "tool/scene_list.hpp"
 
 namespace unravel {
 
@@ -53,7 +54,7 @@ void print_summary(const Options& options, const RunFolder& folder, const nlohma
     fmt::print("  {}\n  {}\n", folder.stats().string(), folder.report().string());
 }
 
-int simulate_clip(const Options& options, bool pictures) {
+int make_run(const Options& options, bool pictures) {
     const auto begin = std::chrono::steady_clock::now();
     const InterruptWatch watch;
     Scene scene = load_scene(options.scene, options.overrides);
@@ -109,6 +110,7 @@ int simulate_clip(const Options& options, bool pictures) {
         source.write_stats();
         nlohmann::ordered_json json =
             run_json(scene, simulation, source, threads, status, report ? &*report : nullptr);
+        if (!options.words.empty()) json["command"] = command_of_run(options);
         json["wall_seconds"] =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         write_whole_file(folder.run_json(), json.dump(2) + "\n");
@@ -135,10 +137,10 @@ int simulate_clip(const Options& options, bool pictures) {
 }  // namespace
 
 int command_run(const Options& options) {
-    return simulate_clip(options, true);
+    return for_each_scene(options, [](const Options& one) { return make_run(one, true); });
 }
 int command_simulate(const Options& options) {
-    return simulate_clip(options, false);
+    return for_each_scene(options, [](const Options& one) { return make_run(one, false); });
 }
 
 }  // namespace unravel

@@ -1,20 +1,14 @@
-// Arguments → options → command; every failure becomes one message and one exit code here.
+// Arguments → options → command.
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <algorithm>
 #include <functional>
 
-#include "base/file_errors.hpp"
-#include "render/gl_context.hpp"
-#include "render/video.hpp"
-#include "sim/explicit_limit.hpp"
-#include "sim/scene/load.hpp"
-#include "sim/step.hpp"
 #include "tool/bench/frames.hpp"
+#include "tool/guarded.hpp"
 #include "tool/options.hpp"
-#include "tool/render_options.hpp"
 #include "tool/version.hpp"
 
 namespace {
@@ -22,7 +16,9 @@ namespace {
 using namespace unravel;
 
 void add_run_options(CLI::App& command, Options& o) {
-    command.add_option("-o", o.output, "folder of the run (default: output/<scene name>)");
+    command.add_option(
+        "-o", o.output,
+        "folder of the run (default: output/<scene name>); of several scenes, the folder around theirs");
     command.add_option("--set", o.overrides, "key=value: another value for a key of the scene; repeatable")
         ->allow_extra_args(false);
     command.add_option("--threads", o.threads, "threads of the simulation (default: one per processor)")
@@ -75,46 +71,37 @@ void add_output_options(CLI::App& command, Options& o) {
     command.add_flag("--json", o.json, "print the result as JSON");
 }
 
-int guarded(const std::function<int()>& command) {
-    // Not fmt::print: it throws where standard error is closed, and the exit code is to be right even then.
-    const auto say = [](const std::string& text) { std::fputs(text.c_str(), stderr); };
-    const auto failed = [&](const std::exception& error, int code) {
-        say(fmt::format("unravel: {}\n", error.what()));
-        return code;
-    };
-    try {
-        const int code = command();
-        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-            throw OutputError("standard output", "nobody reads it, or its disk is full");
-        return code;
-    } catch (const SceneError& error) {
-        // Its text is a list of located problems, to be read by editors as it is.
-        say(fmt::format("{}\n", error.what()));
-        return exit_scene;
-    } catch (const UnstableStep& error) {
-        return failed(error, exit_scene);
-    } catch (const UsageError& error) {
-        return failed(error, exit_usage);
-    } catch (const FolderError& error) {
-        return failed(error, exit_usage);
-    } catch (const RendererError& error) {
-        return failed(error, exit_no_renderer);
-    } catch (const VideoError& error) {
-        return failed(error, exit_no_renderer);
-    } catch (const SimulationError& error) {
-        return failed(error, exit_simulation);
-    } catch (const std::bad_alloc&) {
-        say("unravel: memory ran out; `unravel check` tells what a scene needs\n");
-        return exit_output;
-    } catch (const std::exception& error) {
-        return failed(error, exit_output);
-    }
+void add_cluster_options(CLI::App& command, Options& o) {
+    ClusterOptions& c = o.cluster;
+    const auto add = [&](CLI::Option* option) { return option->group("On a cluster"); };
+    CLI::Option* slurm = add(
+        command.add_flag("--slurm", c.submit,
+                         "send what is missing to Slurm as an array job, and a job after it that concludes"));
+    const auto with = [&](CLI::Option* option) { add(option)->needs(slurm); };
+    with(command.add_flag("--wait", c.wait, "show progress until all is done"));
+    with(command.add_flag("--dry-run", c.dry_run, "print the job scripts, change nothing"));
+    with(command.add_option("--partition", c.partition, "of the cluster"));
+    with(command.add_option("--time", c.time, "limit for each task, as sbatch takes it"));
+    with(command.add_option("--cpus", c.cpus, "processors for each task")->check(CLI::Range(1, 1024)));
+    with(command.add_option("--array-limit", c.array_limit, "tasks at the same time")
+             ->check(CLI::Range(1, 1000000)));
+    with(
+        command.add_option("--sbatch", c.sbatch, "any other option of sbatch: --sbatch=--mem=8G; repeatable")
+            ->allow_extra_args(false));
+    CLI::Option* point =
+        add(command.add_option("--point", o.point, "what a task does: this piece only, from 0 on")
+                ->check(CLI::Range(0, 1000000)));
+    CLI::Option* collect = add(command.add_flag(
+        "--collect", o.collect, "conclude from the pieces that lie there, name those that are missing"));
+    slurm->excludes(point)->excludes(collect);
+    point->excludes(collect);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     Options options;
+    options.words.assign(argv + std::min(argc, 1), argv + argc);
     CLI::App app("Unravel: cloth simulated with a decomposing solver, rendered off-screen.", "unravel");
     app.set_version_flag("--version", version());
     app.require_subcommand(1);
@@ -131,19 +118,25 @@ int main(int argc, char** argv) {
         return sub;
     };
 
-    CLI::App* run =
-        takes(command("run", "simulate, render both views, encode", command_run), "SCENE", "scene file");
-    add_run_options(*run, options);
-    add_picture_options(*run, options);
-    CLI::App* simulate =
-        takes(command("simulate", "simulate only, into a cache", command_simulate), "SCENE", "scene file");
-    add_run_options(*simulate, options);
+    const auto takes_scenes = [&](CLI::App* sub) {
+        sub->add_option("SCENE", options.scenes, "scene files, each made into a clip of its own")->required();
+        add_run_options(*sub, options);
+        add_cluster_options(*sub, options);
+        return sub;
+    };
+    add_picture_options(*takes_scenes(command("run", "simulate, render both views, encode", command_run)),
+                        options);
+    takes_scenes(command("simulate", "simulate only, into a cache", command_simulate));
     CLI::App* render = takes(command("render", "pictures and videos from a cached run", command_render),
                              "RUN_DIR", "folder of the run");
     render->add_option("-o", options.output, "folder for the pictures (default: the run's own)");
     render->add_option("--set", options.overrides, "key=value of [camera], [look] or clip.size")
         ->allow_extra_args(false);
     add_picture_options(*render, options);
+    add_cluster_options(*render, options);
+    render
+        ->add_option("--parts", options.parts, "ranges that a cluster draws the frames in (default: chosen)")
+        ->check(CLI::Range(1, 1000));
     render->add_option("--still", options.still, "this frame alone, without a video")
         ->check(CLI::NonNegativeNumber);
     render
@@ -187,6 +180,9 @@ int main(int argc, char** argv) {
         ->add_option("--threads", options.threads, "threads of the simulation (default: one per processor)")
         ->check(CLI::Range(1, 1024));
     accuracy->add_flag("--force", options.force, "forget the points of an earlier study in the folder");
+    add_cluster_options(*accuracy, options);
+    accuracy->add_flag("--reference", options.reference, "compute the reference, no point")
+        ->group("On a cluster");
     CLI::App* inspect =
         takes(command("inspect", "one frame in depth: components, splitting, the matrix", command_inspect),
               "RUN_DIR", "folder of the run");
@@ -240,6 +236,7 @@ int main(int argc, char** argv) {
     stability->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
         ->capture_default_str();
     stability->add_flag("--pictures,!--no-pictures", options.pictures, "draw each case (default: yes)");
+    add_cluster_options(*stability, options);
     command("doctor", "which renderers and encoders this machine has, and how to get what is missing",
             command_doctor);
 

@@ -18,13 +18,26 @@ enum Exit : int {
     exit_interrupted = 130,
 };
 
+/// --slurm and what goes with it: work sent to a cluster instead of done here.
+struct ClusterOptions {
+    bool submit = false;   ///< --slurm
+    bool wait = false;     ///< --wait: show progress until all is done
+    bool dry_run = false;  ///< --dry-run: print the job scripts, change nothing
+    std::string partition, time;
+    int cpus = 0;                     ///< per task; 0: as the cluster has it
+    int array_limit = 0;              ///< tasks at the same time; 0: as many as the cluster gives
+    std::vector<std::string> sbatch;  ///< any other of sbatch's options, as they are
+};
+
 /// What the command line says; commands read the parts that concern them.
 struct Options {
-    std::filesystem::path scene;         ///< SCENE or RUN_DIR
-    std::filesystem::path output;        ///< -o; empty: output/<scene name>
-    std::vector<std::string> overrides;  ///< --set
-    std::string frames;                  ///< --frames A-B
-    int threads = 0;                     ///< 0: one per processor
+    std::vector<std::string> words;             ///< the command line itself, from the command's name on
+    std::vector<std::filesystem::path> scenes;  ///< run, simulate: all that were named
+    std::filesystem::path scene;                ///< SCENE or RUN_DIR
+    std::filesystem::path output;               ///< -o; empty: output/<scene name>
+    std::vector<std::string> overrides;         ///< --set
+    std::string frames;                         ///< --frames A-B
+    int threads = 0;                            ///< 0: one per processor
     bool resume = false, force = false, quiet = false, json = false;
     bool compare_whole = false;
     std::string device = "auto";
@@ -52,6 +65,11 @@ struct Options {
     std::int64_t particle = -1, spring = -1;  ///< inspect; −1: none asked for
     bool quick = false;                       ///< reproduce
     std::string what;                         ///< schema: scene, run or stats
+    ClusterOptions cluster;
+    int point = -1;          ///< --point: this piece of the work only, counted from 0; −1: all
+    int parts = 0;           ///< render: --parts, ranges of frames that the work is cut into; 0: chosen
+    bool collect = false;    ///< --collect: conclude from the pieces that lie there, compute none
+    bool reference = false;  ///< accuracy: --reference, compute nothing else
 };
 
 // The commands. Each returns an exit code and throws what main() turns into one.

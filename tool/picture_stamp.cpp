@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "base/whole_file.hpp"
 #include "sim/frame_record.hpp"
@@ -21,6 +23,34 @@ constexpr std::size_t largest_texture = std::size_t{1} << 30;
 
 fs::path stamp_file(const RunFolder& folder, const std::string& view) {
     return folder.frames() / fmt::format("{}_drawn_with.json", view);
+}
+
+fs::path range_file(const RunFolder& folder, const std::string& view, const FrameRange& range) {
+    return folder.frames() / fmt::format("{}_{:04}-{:04}_drawn_with.json", view, range.first, range.last);
+}
+
+bool is_range_file(const std::string& name, const std::string& view) {
+    // Names differ in their range alone: NAME_0000-0000_drawn_with.json
+    if (!name.starts_with(view + "_") || !name.ends_with("_drawn_with.json")) return false;
+    const std::size_t start = view.size() + 1, end = name.rfind("_drawn_with");
+    if (end <= start) return false;
+    const std::string range = name.substr(start, end - start);
+    return range.find('-') != range.npos && range.find_first_not_of("0123456789-") == range.npos;
+}
+
+void remove_range_files(const RunFolder& folder, const std::string& view,
+                        const std::function<bool(const fs::path&)>& stays = {}) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(folder.frames())) {
+        if (is_range_file(entry.path().filename().string(), view)) files.push_back(entry.path());
+    }
+    for (const fs::path& file : files) {
+        if (!stays || !stays(file)) fs::remove(file);
+    }
+}
+
+std::string text_if_there(const fs::path& file) {
+    return fs::exists(file) ? read_whole_text(file, largest_stamp) : std::string();
 }
 
 // The file under a texture's name may be replaced by another picture.
@@ -73,12 +103,58 @@ bool claim_pictures(const RunFolder& folder, const std::string& view, const std:
         // First of all: were the program to end here, nothing would vouch for the old pictures.
         fs::remove(file);
     }
+    remove_range_files(folder, view);
     if (!whole_clip) return false;
     for (const auto& entry : fs::directory_iterator(folder.frames())) {
         if (is_picture(entry.path().filename().string(), view)) fs::remove(entry.path());
     }
     write_whole_file(file, stamp);
     return false;
+}
+
+bool claim_range(const RunFolder& folder, const std::string& view, const std::string& stamp,
+                 const FrameRange& range) {
+    const fs::path file = range_file(folder, view, range);
+    if (text_if_there(file) == stamp) return true;
+    fs::remove(file);
+    for (int k = range.first; k <= range.last; ++k)
+        fs::remove(folder.frames() / fmt::format("{}_{:04}.png", view, k));
+    write_whole_file(file, stamp);
+    return false;
+}
+
+std::string stamp_of_range(const RunFolder& folder, const std::string& view, const FrameRange& range) {
+    const std::string own = text_if_there(range_file(folder, view, range));
+    return own.empty() ? text_if_there(stamp_file(folder, view)) : own;
+}
+
+void keep_ranges(const RunFolder& folder, const std::string& view, const std::string& stamp,
+                 const std::vector<FrameRange>& ranges) {
+    const auto is_this = [&](const std::string& text) {
+        return !text.empty() && without_renderer(text) == without_renderer(stamp);
+    };
+    const std::string whole = text_if_there(stamp_file(folder, view));
+    std::set<fs::path> files;
+    for (const FrameRange& range : ranges) {
+        files.insert(range_file(folder, view, range));
+        if (is_this(whole)) write_whole_file(range_file(folder, view, range), whole);
+    }
+    fs::remove(stamp_file(folder, view));
+    remove_range_files(folder, view, [&](const fs::path& file) {
+        return files.contains(file) && is_this(text_if_there(file));
+    });
+}
+
+std::string without_renderer(const std::string& stamp) {
+    auto json = nlohmann::ordered_json::parse(stamp, nullptr, false);
+    if (!json.is_object()) return {};
+    json.erase("renderer");
+    return json.dump();
+}
+
+std::string renderer_in(const std::string& stamp) {
+    const auto json = nlohmann::ordered_json::parse(stamp, nullptr, false);
+    return json.is_object() ? json.value("renderer", "") : std::string();
 }
 
 }  // namespace unravel

@@ -15,8 +15,12 @@ std::string duration_text(double seconds) {
     return fmt::format("{} s", s);
 }
 
-Progress::Progress(std::string what, int total, bool quiet)
-    : what_(std::move(what)), total_(total), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+Progress::Progress(std::string what, int total, bool quiet, std::string unit)
+    : what_(std::move(what)),
+      unit_(std::move(unit)),
+      total_(total),
+      quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
     finish();
@@ -31,11 +35,11 @@ void Progress::show(int done, int free) {
     shown_ = now;
     const double elapsed = std::chrono::duration<double>(now - start_).count();
     const int worked = done - free;
-    std::string line = fmt::format("{}: frame {} of {}", what_, done, total_);
+    std::string line = fmt::format("{}: {} {} of {}", what_, unit_, done, total_);
     if (worked > 0) {
         const double each = elapsed / worked;
         line += fmt::format(
-            ", {:.0f} ms per frame, {}", 1e3 * each,
+            ", {:.0f} ms per {}, {}", 1e3 * each, unit_,
             last ? duration_text(elapsed) + " in all" : duration_text(each * (total_ - done)) + " left");
     }
     // Nobody listening (a closed pipe) is no reason to stop a run, so what could be thrown here is not asked

@@ -5,12 +5,12 @@
 
 namespace unravel {
 
-/// Frame k of n, time per frame and time left: one line that is rewritten on a terminal, a plain line now and
-/// then elsewhere. Goes to standard error. The rate is that of frames done by this process, so it is right
-/// after a resume.
+/// Frame (or what else is counted) k of n, time for each and time left: one line that is rewritten on a
+/// terminal, a plain line now and then elsewhere. Goes to standard error. The rate is that of frames done by
+/// this process, so it is right after a resume.
 class Progress {
 public:
-    Progress(std::string what, int total, bool quiet);
+    Progress(std::string what, int total, bool quiet, std::string unit = "frame");
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -22,7 +22,7 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    std::string what_;
+    std::string what_, unit_;
     int total_;
     bool quiet_, terminal_, open_ = false;
     Clock::time_point start_ = Clock::now(), shown_{};

@@ -1,12 +1,11 @@
 #include "tool/run_json.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 
 #include "sim/effects.hpp"
+#include "tool/machine.hpp"
 #include "tool/version.hpp"
 
 namespace unravel {
@@ -14,11 +13,6 @@ namespace unravel {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string host_name() {
-    std::array<char, 256> name{};
-    return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
 
 Json totals(const std::vector<StepReport>& reports, std::size_t particles) {
     std::uint64_t rvm = 0, rvm_whole = 0, iterations = 0, unconverged = 0;
@@ -71,6 +65,7 @@ Json run_json(const Scene& scene, const Simulation& simulation, const RunSource&
     json["scene"] = scene.name;
     json["status"] = status;
     json["host"] = host_name();
+    json["processor"] = processor_name();
     json["threads"] = threads;
     json["particles"] = simulation.model.size();
     json["springs"] = {{"stretch", simulation.model.springs.stretch_count},

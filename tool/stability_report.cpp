@@ -14,6 +14,11 @@ const char* must_word(Must must) {
     return words[static_cast<int>(must)];
 }
 
+const char* kind_word(Kind kind) {
+    constexpr const char* words[] = {"survived", "refused", "stopped"};
+    return words[static_cast<int>(kind)];
+}
+
 std::string percent(double share) {
     return share < 0.0995 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
 }
@@ -46,9 +51,7 @@ std::string escaped(const std::string& text) {
 }  // namespace
 
 std::string verdict(const HardLine& line) {
-    if (!line.outcome.failures.empty()) return "FAILED";
-    constexpr const char* words[] = {"survived", "refused", "stopped"};
-    return words[static_cast<int>(line.outcome.kind)];
+    return line.outcome.failures.empty() ? kind_word(line.outcome.kind) : "FAILED";
 }
 
 std::string terminal_line(const HardLine& line) {
@@ -67,40 +70,42 @@ std::string terminal_line(const HardLine& line) {
     return text;
 }
 
+Json stability_json(const HardLine& line) {
+    const HardOutcome& o = line.outcome;
+    return {{"name", line.hard.name},
+            {"what", line.hard.what},
+            {"scene", line.hard.scene.filename().string()},
+            {"set", line.hard.set},
+            {"must", must_word(line.hard.must)},
+            {"ended", kind_word(o.kind)},
+            {"verdict", verdict(line)},
+            {"failures", o.failures},
+            {"says", o.says},
+            {"particles", o.particles},
+            {"steps", o.steps},
+            {"max_strain", o.max_strain},
+            {"strain_bound", line.hard.strain},
+            {"energy_rise", o.energy_rise},
+            {"energy_fed", line.hard.fed},
+            {"steps_taken_again", o.again},
+            {"flicker", o.flicker},
+            {"chatter", o.chatter},
+            {"jitter", o.jitter},
+            {"penetration", o.penetration},
+            {"pin_error", o.pin_error},
+            {"final_speed", o.final_speed},
+            {"cg_iterations_max", o.cg_most},
+            {"unconverged_steps", o.unconverged},
+            {"hash", fmt::format("{:016x}", o.hash)},
+            {"same_bits_1_2_threads", o.same_bits},
+            {"seconds", o.seconds},
+            {"picture", line.picture}};
+}
+
 Json stability_json(const std::vector<HardLine>& lines) {
     Json json;
     json["cases"] = Json::array();
-    for (const HardLine& line : lines) {
-        const HardOutcome& o = line.outcome;
-        Json one{{"name", line.hard.name},
-                 {"what", line.hard.what},
-                 {"scene", line.hard.scene.filename().string()},
-                 {"set", line.hard.set},
-                 {"must", must_word(line.hard.must)},
-                 {"verdict", verdict(line)},
-                 {"failures", o.failures},
-                 {"says", o.says},
-                 {"particles", o.particles},
-                 {"steps", o.steps},
-                 {"max_strain", o.max_strain},
-                 {"strain_bound", line.hard.strain},
-                 {"energy_rise", o.energy_rise},
-                 {"energy_fed", line.hard.fed},
-                 {"steps_taken_again", o.again},
-                 {"flicker", o.flicker},
-                 {"chatter", o.chatter},
-                 {"jitter", o.jitter},
-                 {"penetration", o.penetration},
-                 {"pin_error", o.pin_error},
-                 {"final_speed", o.final_speed},
-                 {"cg_iterations_max", o.cg_most},
-                 {"unconverged_steps", o.unconverged},
-                 {"hash", fmt::format("{:016x}", o.hash)},
-                 {"same_bits_1_2_threads", o.same_bits},
-                 {"seconds", o.seconds},
-                 {"picture", line.picture}};
-        json["cases"].push_back(std::move(one));
-    }
+    for (const HardLine& line : lines) json["cases"].push_back(stability_json(line));
     return json;
 }
 

@@ -21,6 +21,7 @@ std::string verdict(const HardLine& line);
 /// The case on one line of a terminal.
 std::string terminal_line(const HardLine& line);
 
+nlohmann::ordered_json stability_json(const HardLine& line);
 nlohmann::ordered_json stability_json(const std::vector<HardLine>& lines);
 
 /// The two tables of the README's section on reliability: what must survive, what must not.

@@ -87,12 +87,16 @@ void Studio::plan_shots() {
 }
 
 void Studio::claim() {
-    reusable_.assign(options_.views.size(), 0);
+    reusable_.assign(options_.views.size(), options_.vouched);
+    if (options_.vouched) return;
     if (!options_.keep_pictures && !options_.reuse_pictures) return;
     const std::string stamp = picture_stamp(scene_, options_, report_.renderer);
     const bool whole = options_.first == 0 && options_.last == scene_.clip.frames() - 1;
     for (std::size_t v = 0; v < options_.views.size(); ++v) {
-        const bool same = claim_pictures(folder_, options_.views[v].name, stamp, whole);
+        const std::string& name = options_.views[v].name;
+        const bool same = options_.shares_folder
+                              ? claim_range(folder_, name, stamp, {options_.first, options_.last})
+                              : claim_pictures(folder_, name, stamp, whole);
         reusable_[v] = options_.reuse_pictures && same;
     }
 }

@@ -35,6 +35,7 @@ struct AccuracyPoint {
     double error = 0;    ///< RMS distance from the reference over particles and frames, over the diagonal
     double max_strain = 0, lowest = 0, energy = 0;  ///< greatest, at the end [m], at the end [J]
     std::uint64_t steps = 0, rvm = 0;
+    std::string node, processor;  ///< where it was timed
     std::vector<double> seconds;  ///< of the steps alone, one per run
     double median() const;
     double fastest() const;
@@ -74,6 +75,9 @@ struct AccuracyReference {
 inline constexpr double parted = 1e-3;
 /// The window is at least this long where the scene is [s].
 inline constexpr double least_window = 0.2;
+
+/// A reference takes at most so many steps a frame.
+inline constexpr int finest_reference = 4096;
 
 /// Computes it, spending about `seconds`.
 AccuracyReference make_reference(const Scene& scene, double seconds, const std::function<bool()>& keep_on);

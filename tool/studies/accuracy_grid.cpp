@@ -36,9 +36,8 @@ void add(std::vector<AccuracySetting>& grid, AccuracySetting setting, const std:
 
 constexpr std::string_view header =
     "integrator,steps_per_frame,threshold,tolerance,activation,band,bend,broke,error,max_strain,lowest,"
-    "energy,"
-    "steps,rvm,"
-    "median_seconds,fastest_seconds,slowest_seconds,runs,seconds";
+    "energy,steps,rvm,"
+    "median_seconds,fastest_seconds,slowest_seconds,runs,node,processor,seconds";
 
 std::vector<std::string_view> split(std::string_view line, char at) {
     std::vector<std::string_view> parts;
@@ -73,6 +72,8 @@ bool parse_point(const std::vector<std::string_view>& cells, AccuracyPoint& p) {
                 parse(cells[8], p.error) && parse(cells[9], p.max_strain) && parse(cells[10], p.lowest) &&
                 parse(cells[11], p.energy) && parse(cells[12], p.steps) && parse(cells[13], p.rvm);
     p.broke = broke != 0;
+    p.node = cells[cells.size() - 3];
+    p.processor = cells[cells.size() - 2];
     for (const std::string_view text : split(cells.back(), ' ')) {
         p.seconds.push_back(0);
         good = good && parse(text, p.seconds.back());
@@ -140,12 +141,12 @@ std::string accuracy_csv(const std::vector<AccuracyPoint>& points) {
     std::string csv = std::string(header) + "\n";
     for (const AccuracyPoint& p : points) {
         const AccuracySetting& s = p.setting;
-        csv +=
-            fmt::format("{},{},{},{},{},{},{},{:d},{},{},{},{},{},{},{:.6f},{:.6f},{:.6f},{},",
-                        scheme_of(s.integrator).name, s.steps_per_frame, s.threshold, s.tolerance,
-                        activations[static_cast<int>(s.activation)], s.band,
-                        bend_treatments[static_cast<int>(s.bend)], p.broke, p.error, p.max_strain, p.lowest,
-                        p.energy, p.steps, p.rvm, p.median(), p.fastest(), p.slowest(), p.seconds.size());
+        csv += fmt::format("{},{},{},{},{},{},{},{:d},{},{},{},{},{},{},{:.6f},{:.6f},{:.6f},{},{},{},",
+                           scheme_of(s.integrator).name, s.steps_per_frame, s.threshold, s.tolerance,
+                           activations[static_cast<int>(s.activation)], s.band,
+                           bend_treatments[static_cast<int>(s.bend)], p.broke, p.error, p.max_strain,
+                           p.lowest, p.energy, p.steps, p.rvm, p.median(), p.fastest(), p.slowest(),
+                           p.seconds.size(), p.node, p.processor);
         for (std::size_t k = 0; k < p.seconds.size(); ++k)
             csv += fmt::format("{}{:.6f}", k ? " " : "", p.seconds[k]);
         csv += '\n';

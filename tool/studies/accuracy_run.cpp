@@ -162,7 +162,7 @@ AccuracyReference make_reference(const Scene& scene, double seconds, const std::
         probe.point.median() / std::max<double>(1, static_cast<double>(probe.point.steps));
     const int wanted = std::min(all, std::max(1, scene.clip.fps / 2));
     int steps = 256;
-    while (steps < 4096 && 2 * (2.0 * steps) * wanted * per_step < seconds) steps *= 2;
+    while (steps < finest_reference && 2 * (2.0 * steps) * wanted * per_step < seconds) steps *= 2;
 
     reference.first = reference_setting(Integrator::adaptive_imex2, steps);
     reference.second = reference_setting(second_integrator(scene, steps), steps);

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <optional>
 
-#include "base/whole_file.hpp"
-#include "sim/scene/load.hpp"
+#include "tool/machine.hpp"
 #include "tool/progress.hpp"
 #include "tool/studies/accuracy_verdict.hpp"
 
@@ -17,58 +15,42 @@ namespace {
 
 // Shares of the budget: for the reference, and until which every point is to have run once.
 constexpr double reference_share = 0.25, first_runs_share = 0.7;
-constexpr std::size_t wanted_runs = 5;
 // Points this much dearer than the front's at their error are timed once.
 constexpr double near_front = 4;
-constexpr std::size_t largest_csv = std::size_t{1} << 26;
-
-std::size_t particles_of(const Scene& scene) {
-    std::size_t particles = 0;
-    for (const Cloth& cloth : scene.cloths)
-        particles +=
-            static_cast<std::size_t>(cloth.particles[0]) * static_cast<std::size_t>(cloth.particles[1]);
-    return particles;
-}
 
 class Work {
 public:
     Work(const Scene& scene, const std::filesystem::path& folder, const AccuracyBudget& budget,
          const std::function<bool()>& keep_on)
-        : folder_(folder), budget_(budget), keep_on_(keep_on) {
+        : folder_(scene, folder, budget.force), budget_(budget), keep_on_(keep_on) {
+        folder_.begin();
         study_.scene = scene;
-        std::filesystem::create_directories(folder_);
-        const std::string as_run = scene_to_toml(scene);
-        const std::filesystem::path toml = folder_ / "scene.toml", reference = folder_ / "reference.bin";
-        const bool same =
-            std::filesystem::exists(toml) && read_whole_text(toml, largest_csv) == as_run && !budget.force;
-        resumed_ = same && std::filesystem::exists(reference);
-        if (resumed_ && std::filesystem::exists(csv()))
-            study_.points = read_accuracy_csv(read_whole_text(csv(), largest_csv));
-        if (!resumed_) {
-            std::filesystem::remove(csv());
-            std::filesystem::remove(reference);
-        }
-        write_whole_file(toml, as_run);
     }
 
-    AccuracyStudy run() {
-        AccuracyReference& reference = study_.reference;
-        if (resumed_) {
-            reference = read_reference(folder_ / "reference.bin", particles_of(study_.scene));
+    // False: it was stopped.
+    bool have_reference() {
+        if (folder_.holds_study()) {
+            study_ = folder_.read();
         } else {
             if (!budget_.quiet) fmt::print(stderr, "{}: computing the reference ...\n", study_.scene.name);
-            reference = make_reference(study_.scene, reference_share * budget_.seconds, keep_on_);
-            study_.stopped = !keep_on_();
-            if (study_.stopped) return std::move(study_);
-            write_whole_file(folder_ / "reference.bin", reference_bytes(reference));
+            study_.reference = make_reference(study_.scene, reference_share * budget_.seconds, keep_on_);
+            if (!keep_on_()) return false;
+            folder_.save_reference(study_.reference);
         }
+        const AccuracyReference& reference = study_.reference;
         if (!budget_.quiet) {
             fmt::print(stderr, "reference: {} at 1/{} s, confirmed to {:.2e} by {} over {:.2f} s\n",
                        reference.first.method(), reference.first.steps_per_frame * study_.scene.clip.fps,
                        reference.floor, reference.second.method(), study_.window());
         }
-        run_all_once();
-        repeat();
+        return true;
+    }
+
+    AccuracyStudy run() {
+        if (have_reference()) {
+            run_all_once();
+            repeat();
+        }
         study_.stopped = !keep_on_();
         return std::move(study_);
     }
@@ -76,13 +58,7 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
-    std::filesystem::path csv() const { return folder_ / "accuracy.csv"; }
     double spent() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
-    bool known(const AccuracySetting& setting) const {
-        return std::any_of(study_.points.begin(), study_.points.end(),
-                           [&](const AccuracyPoint& p) { return p.setting == setting; });
-    }
 
     // A method's next finer run takes at most about twice the last one's time.
     double estimate(const AccuracySetting& setting) const {
@@ -95,16 +71,6 @@ private:
         return best;
     }
 
-    std::optional<AccuracyPoint> measure(const AccuracySetting& setting) {
-        AccuracyRun run = run_setting(study_.scene, setting, study_.reference.frames, keep_on_);
-        if (run.stopped) return {};
-        run.point.error = distance(run.trajectory, study_.reference.trajectory, diagonal_of(study_.scene));
-        run.point.broke = run.point.broke || !(run.point.error < 1);
-        return std::move(run.point);
-    }
-
-    void save() { write_whole_file(csv(), accuracy_csv(study_.points)); }
-
     void run_all_once() {
         const std::vector<AccuracySetting> grid = accuracy_grid(study_.reference);
         Progress progress(study_.scene.name + " once", static_cast<int>(grid.size()), budget_.quiet);
@@ -112,7 +78,7 @@ private:
         for (const AccuracySetting& setting : grid) {
             if (!keep_on_()) break;
             progress.show(done++, free);
-            if (known(setting)) {
+            if (study_.find(setting)) {
                 ++free;
                 continue;
             }
@@ -120,9 +86,9 @@ private:
                 ++study_.skipped;
                 continue;
             }
-            if (std::optional<AccuracyPoint> point = measure(setting)) {
+            if (std::optional<AccuracyPoint> point = measure_point(study_, setting, keep_on_)) {
                 study_.points.push_back(std::move(*point));
-                save();
+                folder_.save_points(study_.points);
             }
         }
         progress.finish();
@@ -156,19 +122,23 @@ private:
                 if (!keep_on_()) break;
                 AccuracyPoint& point = study_.points[k];
                 if (point.seconds.size() >= round || spent() + point.median() > budget_.seconds) continue;
-                if (const std::optional<AccuracyPoint> again = measure(point.setting))
+                std::optional<AccuracyPoint> again = measure_point(study_, point.setting, keep_on_);
+                if (!again) continue;
+                if (again->processor == point.processor) {
                     point.seconds.push_back(again->seconds.front());
+                } else {
+                    point = std::move(*again);  // times of two processors make no median
+                }
             }
-            save();
+            folder_.save_points(study_.points);
         }
         progress.finish();
     }
 
-    std::filesystem::path folder_;
+    AccuracyFolder folder_;
     AccuracyBudget budget_;
     const std::function<bool()>& keep_on_;
     AccuracyStudy study_;
-    bool resumed_ = false;  ///< the folder held a study of this very scene
     Clock::time_point start_ = Clock::now();
 };
 
@@ -177,6 +147,22 @@ private:
 AccuracyStudy study_accuracy(const Scene& scene, const std::filesystem::path& folder,
                              const AccuracyBudget& budget, const std::function<bool()>& keep_on) {
     return Work(scene, folder, budget, keep_on).run();
+}
+
+bool study_reference(const Scene& scene, const std::filesystem::path& folder, const AccuracyBudget& budget,
+                     const std::function<bool()>& keep_on) {
+    return Work(scene, folder, budget, keep_on).have_reference();
+}
+
+std::optional<AccuracyPoint> measure_point(const AccuracyStudy& study, const AccuracySetting& setting,
+                                           const std::function<bool()>& keep_on) {
+    AccuracyRun run = run_setting(study.scene, setting, study.reference.frames, keep_on);
+    if (run.stopped) return {};
+    run.point.node = host_name();
+    run.point.processor = processor_name();
+    run.point.error = distance(run.trajectory, study.reference.trajectory, diagonal_of(study.scene));
+    run.point.broke = run.point.broke || !(run.point.error < 1);
+    return std::move(run.point);
 }
 
 }  // namespace unravel

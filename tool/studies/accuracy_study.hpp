@@ -1,10 +1,8 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <vector>
+#include <optional>
 
-#include "tool/studies/accuracy.hpp"
+#include "tool/studies/accuracy_folder.hpp"
 
 namespace unravel {
 
@@ -14,22 +12,22 @@ struct AccuracyBudget {
     bool quiet = false;
 };
 
-/// A study as far as it got.
-struct AccuracyStudy {
-    Scene scene;
-    AccuracyReference reference;
-    std::vector<AccuracyPoint> points;
-    int skipped = 0;       ///< settings that did not fit the budget
-    bool stopped = false;  ///< by keep_on
-    double window() const { return static_cast<double>(reference.frames) / scene.clip.fps; }  ///< s
-};
+/// Times of a point on one machine: so many make its median.
+inline constexpr std::size_t wanted_runs = 5;
 
 /// Computes the reference, runs every setting of the grid once, those that matter first, and then times those
-/// near the front again and again, all in turn, so that a busy spell of the machine falls on all. The folder
-/// keeps scene.toml, reference.bin and accuracy.csv, each whole at any time: a study of the same scene in the
-/// same folder goes on where the last one ended.
+/// near the front again and again, all in turn, so that a busy spell of the machine falls on all. A study of
+/// the same scene in the same folder goes on where the last one ended.
 ///   keep_on  asked before each frame; false ends the study with what it has
 AccuracyStudy study_accuracy(const Scene& scene, const std::filesystem::path& folder,
                              const AccuracyBudget& budget, const std::function<bool()>& keep_on);
+
+/// The reference alone, where the folder does not hold it yet. False: keep_on ended it.
+bool study_reference(const Scene& scene, const std::filesystem::path& folder, const AccuracyBudget& budget,
+                     const std::function<bool()>& keep_on);
+
+/// One run of a setting against the study's reference; nothing where keep_on ended it.
+std::optional<AccuracyPoint> measure_point(const AccuracyStudy& study, const AccuracySetting& setting,
+                                           const std::function<bool()>& keep_on);
 
 }  // namespace unravel

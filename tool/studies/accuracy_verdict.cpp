@@ -1,9 +1,12 @@
 #include "tool/studies/accuracy_verdict.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "sim/integrators/scheme.hpp"
 
@@ -52,6 +55,37 @@ std::vector<AccuracyCurve> curves_of(const std::vector<AccuracyPoint>& points, d
         }
     }
     return curves;
+}
+
+std::string processor_of_most(const std::vector<AccuracyPoint>& points) {
+    std::map<std::string, int> counts;
+    for (const AccuracyPoint& p : points) {
+        if (!p.broke) ++counts[p.processor];
+    }
+    const auto most = std::max_element(counts.begin(), counts.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    return most == counts.end() ? std::string() : most->first;
+}
+
+std::string leave_out_other_processors(std::vector<AccuracyPoint>& points) {
+    const std::string processor = processor_of_most(points);
+    std::map<std::string, std::set<std::string>> others;  // processor → nodes
+    const std::size_t all = points.size();
+    std::erase_if(points, [&](const AccuracyPoint& p) {
+        if (p.broke || p.processor == processor) return false;
+        others[p.processor].insert(p.node);
+        return true;
+    });
+    if (others.empty()) return {};
+    std::string text = fmt::format(
+        "{} of {} points were not timed on '{}', as most were, and are left out: times of "
+        "different processors make no front.",
+        all - points.size(), all, processor);
+    for (const auto& [name, nodes] : others)
+        text += fmt::format("\n  '{}': {}", name, fmt::join(nodes, ", "));
+    return text +
+           "\nThe same command times them again; --partition or --sbatch=--constraint=... choose equal "
+           "nodes.";
 }
 
 std::vector<const AccuracyPoint*> pareto_front(const std::vector<AccuracyPoint>& points) {

@@ -21,6 +21,13 @@ struct AccuracyCurve {
 };
 std::vector<AccuracyCurve> curves_of(const std::vector<AccuracyPoint>& points, double floor);
 
+/// The processor that most points were timed on, the first of them in the alphabet where there are several.
+std::string processor_of_most(const std::vector<AccuracyPoint>& points);
+
+/// Times of different processors make no front: keeps the points of processor_of_most(), and broken ones,
+/// which have no time. Returns in words what was left out and what to do; empty where nothing was.
+std::string leave_out_other_processors(std::vector<AccuracyPoint>& points);
+
 /// Points that no other beats in both time and error, from cheap to accurate.
 std::vector<const AccuracyPoint*> pareto_front(const std::vector<AccuracyPoint>& points);
 

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <functional>
+
+namespace unravel {
+
+/// Runs a command, or a part of one, and turns what it throws into one message on standard error and one exit
+/// code. Standard output that nobody could read is a failure too.
+int guarded(const std::function<int()>& command);
+
+}  // namespace unravel
