@@ -20,6 +20,11 @@ Vec3f half_extents(const SolidMesh& solid) {
             return {solid.radius, 0.5f * solid.height, solid.radius};
         case SolidShape::capsule:
             return {solid.radius, 0.5f * solid.height + solid.radius, solid.radius};
+        case SolidShape::mesh: {
+            Vec3f half = Vec3f::Zero();
+            for (const Vec3f& x : solid.positions) half = half.cwiseMax(x.cwiseAbs());
+            return half;
+        }
     }
     return Vec3f::Zero();
 }
@@ -32,6 +37,10 @@ void visit_bounds(const DrawScene& scene, const DrawFrame& frame,
         for (const std::uint32_t p : mesh.particle) visit(frame.positions[p]);
     for (std::size_t s = 0; s < scene.solids.size(); ++s) {
         if (scene.solids[s].shape == SolidShape::plane) continue;
+        if (scene.solids[s].deforms) {
+            for (const Vec3f& x : frame.solid_positions[s]) visit(frame.solid_poses[s] * x);
+            continue;
+        }
         const Vec3f half = half_extents(scene.solids[s]);
         for (int corner = 0; corner < 8; ++corner) {
             const Vec3f sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);

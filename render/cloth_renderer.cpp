@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "render/color.hpp"
 #include "render/normals.hpp"
@@ -28,16 +29,35 @@ void upload_texture(GLuint texture, const Image& image) {
         glTexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAX_ANISOTROPY_EXT, 8);
 }
 
+/// Which of a mesh's pieces each vertex belongs to: of a garment's panels many lie on the same place of the
+/// flat cloth.
+std::vector<std::uint32_t> pieces_of(const ClothMesh& mesh) {
+    std::vector<std::uint32_t> parent(mesh.uv.size());
+    for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = i;
+    const auto root = [&](std::uint32_t i) {
+        while (parent[i] != i) i = parent[i] = parent[parent[i]];
+        return i;
+    };
+    for (const auto& [a, b, c] : mesh.triangles) {
+        parent[root(b)] = root(a);
+        parent[root(c)] = root(a);
+    }
+    for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = root(i);
+    return parent;
+}
+
 /// Triangles between a few of the mesh's vertices: each cell of a grid over the flat cloth, `cells` along its
-/// longer side, is stood for by its first vertex.
+/// longer side, is stood for by its first vertex, piece by piece.
 std::vector<std::uint32_t> coarsen(const ClothMesh& mesh, float cells) {
     Vec2f extent(1e-6f, 1e-6f);
     for (const Vec2f& uv : mesh.uv) extent = extent.cwiseMax(uv);
     const float cell = extent.maxCoeff() / cells;
-    std::map<std::pair<int, int>, std::uint32_t> first;
+    const std::vector<std::uint32_t> piece = pieces_of(mesh);
+    std::map<std::tuple<std::uint32_t, int, int>, std::uint32_t> first;
     std::vector<std::uint32_t> standing(mesh.uv.size());
     for (std::uint32_t i = 0; i < mesh.uv.size(); ++i) {
-        const std::pair key{static_cast<int>(mesh.uv[i].x() / cell), static_cast<int>(mesh.uv[i].y() / cell)};
+        const std::tuple key{piece[i], static_cast<int>(mesh.uv[i].x() / cell),
+                             static_cast<int>(mesh.uv[i].y() / cell)};
         standing[i] = first.emplace(key, i).first->second;
     }
     std::vector<std::uint32_t> triangles;

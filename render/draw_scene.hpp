@@ -43,13 +43,16 @@ struct ClothMesh {
     Image texture;  ///< appearance.texture decoded; spans the cloth once, on its front; empty: the weave
 };
 
-enum class SolidShape { plane, sphere, box, cylinder, capsule };
+enum class SolidShape { plane, sphere, box, cylinder, capsule, mesh };
 
 struct SolidMesh {
     SolidShape shape = SolidShape::sphere;
     float radius = 0.3f, height = 1.0f, round = 0.0f;  ///< m; cylinders and capsules stand along y, capsules'
                                                        ///< height is between the centres of their caps
     Vec3f size{1, 1, 1};                               ///< box: full edge lengths [m]
+    std::vector<Vec3f> positions;                      ///< mesh: (vertices) in its own frame [m]
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< mesh: counter-clockwise from outside
+    bool deforms = false;                                 ///< mesh: DrawFrame has its positions
     Rgb color{201, 183, 156};
 };
 
@@ -83,6 +86,8 @@ struct DrawFrame {
     std::vector<std::uint8_t> edge_strength;  ///< (edges) 255 solid … 0 not drawn; empty: all solid
     std::vector<Rgb> edge_colors;  ///< (edges) colours of the wires; empty: those of the particles they join
     std::vector<Eigen::Isometry3f> solid_poses;  ///< (solids) shape's own frame to world
+    /// (solids) vertices of meshes that deform, in their own frames [m]; empty lists for all others.
+    std::vector<std::vector<Vec3f>> solid_positions;
     CameraView camera;
 };
 

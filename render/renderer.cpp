@@ -116,6 +116,12 @@ struct Renderer::Parts {
 void Renderer::Parts::check(DrawStyle style, const DrawFrame& frame) const {
     if (frame.positions.size() < particles || frame.solid_poses.size() < scene->solids.size())
         throw std::invalid_argument("a frame lacks positions or poses that its scene needs");
+    for (std::size_t s = 0; s < scene->solids.size(); ++s) {
+        if (scene->solids[s].deforms &&
+            (frame.solid_positions.size() <= s ||
+             frame.solid_positions[s].size() != scene->solids[s].positions.size()))
+            throw std::invalid_argument("a frame lacks the vertices of a mesh that deforms");
+    }
     if (style != DrawStyle::textured && frame.particle_colors.size() < particles)
         throw std::invalid_argument("a frame of the component view lacks particle colours");
     if (!frame.edge_colors.empty() && frame.edge_colors.size() != edges)
@@ -179,6 +185,7 @@ float Renderer::Parts::wire_gap(const DrawFrame& frame) const {
 
 void Renderer::Parts::draw_textured(DrawStyle style, const DrawFrame& frame, int exposure, int exposures) {
     cloths.update_shape(frame);
+    solids.update_shapes(frame);
     shadows.draw([&](const Eigen::Matrix4f& transform, bool coarse) {
         depth.use();
         solids.draw_shapes(frame, depth_transform, transform, coarse);
@@ -205,6 +212,7 @@ void Renderer::Parts::draw_textured(DrawStyle style, const DrawFrame& frame, int
 
 void Renderer::Parts::draw_components(const DrawFrame& frame, int exposure, int exposures) {
     cloths.update_shape(frame);
+    solids.update_shapes(frame);
     cloths.update_colors(frame);
     wires.update(frame);
     const float gap = wire_gap(frame);

@@ -37,12 +37,38 @@ SolidRenderer::SolidRenderer(const DrawScene& scene)
                               linear(scene.solids[i].color)});
 }
 
-SolidRenderer::Mesh::Mesh(const Tessellation& shape) : count(static_cast<GLsizei>(shape.indices.size())) {
-    std::vector<Vec3f> interleaved;
+namespace {
+
+std::vector<Vec3f> interleave(const Tessellation& shape) {
+    std::vector<Vec3f> out;
+    out.reserve(2 * shape.positions.size());
     for (std::size_t i = 0; i < shape.positions.size(); ++i) {
-        interleaved.push_back(shape.positions[i]);
-        interleaved.push_back(shape.normals[i]);
+        out.push_back(shape.positions[i]);
+        out.push_back(shape.normals[i]);
     }
+    return out;
+}
+
+}  // namespace
+
+void SolidRenderer::update_shapes(const DrawFrame& frame) {
+    for (Part& part : parts_) {
+        const SolidMesh& solid = scene_->solids[static_cast<std::size_t>(part.solid)];
+        if (!solid.deforms) continue;
+        const Tessellation shape =
+            tessellate_mesh(solid.triangles, frame.solid_positions[static_cast<std::size_t>(part.solid)]);
+        part.fine.update(shape);
+        part.coarse.update(shape);
+    }
+}
+
+void SolidRenderer::Mesh::update(const Tessellation& shape) {
+    const std::vector<Vec3f> interleaved = interleave(shape);
+    update_buffer(GL_ARRAY_BUFFER, vertices, std::span(interleaved));
+}
+
+SolidRenderer::Mesh::Mesh(const Tessellation& shape) : count(static_cast<GLsizei>(shape.indices.size())) {
+    const std::vector<Vec3f> interleaved = interleave(shape);
     glBindVertexArray(vertex_array);
     fill_buffer(GL_ARRAY_BUFFER, vertices, interleaved);
     float_attribute(0, 3, 2 * sizeof(Vec3f), 0);

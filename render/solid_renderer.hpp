@@ -13,6 +13,9 @@ class SolidRenderer {
 public:
     explicit SolidRenderer(const DrawScene& scene);
 
+    /// Uploads the frame's positions of meshes that deform. Before anything else of the frame is drawn.
+    void update_shapes(const DrawFrame& frame);
+
     /// How far planes go from the scene's centre [m].
     float reach() const { return reach_; }
     bool any_plane() const { return !parts_.empty() && parts_.back().fades; }
@@ -35,6 +38,7 @@ private:
         GLsizei count = 0;
 
         explicit Mesh(const Tessellation& shape);
+        void update(const Tessellation& shape);
         void draw() const;
     };
     struct Part {

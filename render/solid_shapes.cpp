@@ -112,6 +112,21 @@ Tessellation tessellate_box(const SolidMesh& solid, int straight) {
 
 }  // namespace
 
+Tessellation tessellate_mesh(std::span<const std::array<std::uint32_t, 3>> triangles,
+                             std::span<const Vec3f> positions) {
+    Tessellation mesh;
+    mesh.positions.assign(positions.begin(), positions.end());
+    mesh.normals.assign(positions.size(), Vec3f::Zero());
+    for (const auto& [a, b, c] : triangles) {
+        // The cross product's length is twice the area: the weight comes with it.
+        const Vec3f n = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
+        for (const std::uint32_t v : {a, b, c}) mesh.normals[v] += n;
+        mesh.indices.insert(mesh.indices.end(), {a, b, c});
+    }
+    for (Vec3f& n : mesh.normals) n = n.norm() > 0 ? Vec3f(n.normalized()) : Vec3f(0, 1, 0);
+    return mesh;
+}
+
 Tessellation tessellate(const SolidMesh& solid, float detail) {
     const int sectors = static_cast<int>(72 * detail);
     switch (solid.shape) {
@@ -128,6 +143,8 @@ Tessellation tessellate(const SolidMesh& solid, float detail) {
             return tessellate_cylinder(solid, sectors);
         case SolidShape::capsule:
             return tessellate_capsule(solid, sectors);
+        case SolidShape::mesh:
+            return tessellate_mesh(solid.triangles, solid.positions);
     }
     return {};
 }

@@ -3,8 +3,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "sim/solids/sdf.hpp"
+#include "sim/mesh/mesh_solid.hpp"
 
 namespace unravel {
 
@@ -28,16 +29,27 @@ constexpr double no_gap = 1e-12;
 // Contacts this parallel are one direction.
 constexpr double parallel_cosine = 0.999;
 
-bool touches_solid(const Solid& solid, const Pose& now, const Pose& next, const StepView& view,
-                   std::uint32_t p, const Contact* known, Touch& touch) {
+// How far from a mesh nothing can touch it within the step: the particle, the body and the body's own skin
+// don't meet.
+double out_of_reach(const Solid& solid, const DeformedSolid* deformed, const Vec3& ridden,
+                    const StepView& view, std::uint32_t p) {
+    const double own = view.step * (view.v[p] + view.step * view.gravity).norm();
+    return 2 * solid.offset + own + (ridden - view.x[p]).norm() + (deformed ? deformed->moved : 0.0);
+}
+
+bool touches_solid(const Solid& solid, const DeformedSolid* deformed, const Pose& now, const Pose& next,
+                   const StepView& view, std::uint32_t p, const Contact* known, Touch& touch) {
     const Vec3 local = now.inverse(Eigen::Isometry) * view.x[p];
-    Vec3 gradient;
-    const double distance = signed_distance(solid, local, &gradient);
-    touch.gap = distance - solid.offset;
+    double cutoff = std::numeric_limits<double>::infinity();
+    if (solid.shape == Shape::mesh) cutoff = out_of_reach(solid, deformed, next * local, view, p);
+    const SurfacePoint surface = nearest_surface(solid, deformed, false, local, cutoff);
+    if (surface.distance > cutoff) return false;
+    touch.gap = surface.distance - solid.offset;
     if (std::abs(touch.gap) < no_gap) touch.gap = 0;
-    touch.normal = now.linear() * gradient;
+    touch.normal = now.linear() * surface.normal;
     touch.velocity.setZero();
-    if (!solid.motion.empty()) touch.velocity = (next * local - view.x[p]) / view.step;
+    if (!solid.motion.empty() || deformed)
+        touch.velocity = (next * surface.carried - view.x[p]) / view.step;
     touch.pinched = false;
     // Gravity is foreseen, so that what is laid on a slope is caught before it has begun to slide.
     const Vec3 coming = view.v[p] + view.step * view.gravity - touch.velocity;
@@ -262,6 +274,31 @@ void pose_solids(std::span<const Solid> solids, double t, double h, SolidPoses& 
         out.now.push_back(solid_pose(solid, t));
         out.next.push_back(solid_pose(solid, t + h));
     }
+    const auto deforms = [](const Solid& solid) { return solid.geometry && solid.geometry->deforms(); };
+    if (std::none_of(solids.begin(), solids.end(), deforms)) return;
+    out.deformed.resize(solids.size());
+    for (std::size_t s = 0; s < solids.size(); ++s) {
+        if (!deforms(solids[s])) continue;
+        const MeshSolid& mesh = *solids[s].geometry;
+        DeformedSolid& body = out.deformed[s];
+        if (body.now.empty()) body.now = body.next = mesh.tree;
+        std::swap(body.now, body.next);
+        std::swap(body.positions_now, body.positions_next);
+        if (body.t_next != t) {
+            mesh.positions_at(t, body.positions_now);
+            body.now.refit(body.positions_now);
+        }
+        mesh.positions_at(t + h, body.positions_next);
+        body.next.refit(body.positions_next);
+        body.t_next = t + h;
+        body.moved = 0;
+        for (std::size_t v = 0; v < body.positions_now.size(); ++v)
+            body.moved = std::max(body.moved, (body.positions_next[v] - body.positions_now[v]).norm());
+    }
+}
+
+const DeformedSolid* SolidPoses::of(const Solid& solid, std::size_t index) const {
+    return solid.geometry && solid.geometry->deforms() ? &deformed[index] : nullptr;
 }
 
 void find_touches(std::span<const Solid> solids, const SolidPoses& poses, const StepView& view,
@@ -284,7 +321,8 @@ void find_touches(std::span<const Solid> solids, const SolidPoses& poses, const 
                 Touch touch;
                 touch.contact.particle = p;
                 touch.contact.solid = s;
-                if (touches_solid(solids[s], poses.now[s], poses.next[s], view, p, before, touch)) {
+                if (touches_solid(solids[s], poses.of(solids[s], s), poses.now[s], poses.next[s], view, p,
+                                  before, touch)) {
                     found[chunk].push_back(touch);
                 }
             }

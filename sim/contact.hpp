@@ -7,6 +7,7 @@
 #include "sim/math.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/solids/motion.hpp"
+#include "sim/solids/sdf.hpp"
 #include "sim/state.hpp"
 
 namespace unravel {
@@ -17,7 +18,9 @@ namespace unravel {
 
 /// Where each solid is at the beginning and at the end of a step.
 struct SolidPoses {
-    std::vector<Pose> now, next;  ///< (solids)
+    std::vector<Pose> now, next;          ///< (solids)
+    std::vector<DeformedSolid> deformed;  ///< (solids) or empty where none deforms
+    const DeformedSolid* of(const Solid& solid, std::size_t index) const;
 };
 void pose_solids(std::span<const Solid> solids, double t, double h, SolidPoses& out);
 

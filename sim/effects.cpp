@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "sim/mesh/mesh_cloth.hpp"
+
 namespace unravel {
 
 namespace {
@@ -39,7 +41,21 @@ std::vector<Effect> list_effects(const Scene& scene) {
     };
     bool stretch = false, shear = false, bend = false, pins = false, regions = false;
     std::string pin_places = "[[cloth.pin]]", region_places = "[[cloth.region]]";
+    std::size_t seams = 0;
     for (const Cloth& cloth : scene.cloths) {
+        if (cloth.geometry) {
+            const auto quads = [](const MeshCloth::Cell& cell) { return cell.corners == 4; };
+            stretch = true;
+            shear = shear || (cloth.material.shear > 0 &&
+                              std::any_of(cloth.geometry->cells.begin(), cloth.geometry->cells.end(), quads));
+            bend = bend || cloth.material.bend > 0;
+            seams += cloth.geometry->seams.size();
+            pins = pins || !cloth.pins.empty();
+            regions = regions || !cloth.regions.empty();
+            add_places(cloth.pins, pin_places);
+            add_places(cloth.regions, region_places);
+            continue;
+        }
         const bool grid = cloth.particles[0] > 1 && cloth.particles[1] > 1;
         stretch = stretch || cloth.particles[0] * cloth.particles[1] > 1;
         double most_shear = cloth.material.shear, most_bend = cloth.material.bend;
@@ -63,6 +79,8 @@ std::vector<Effect> list_effects(const Scene& scene) {
     add("shear", shear, "a cloth has shear stiffness", "no cloth has shear stiffness");
     add("bend", bend, "a cloth has bending stiffness", "no cloth has bending stiffness");
     add("regions", regions, region_places, "no [[cloth.region]]");
+    add("seams", seams > 0, fmt::format("a mesh has {} stitches (l lines)", seams),
+        "no mesh has seams (l lines)");
     add("gravity", !scene.gravity.isZero(), fmt::format("{} m/s²", scene.gravity.norm()),
         "gravity = [0, 0, 0]");
     add("pins", pins, pin_places, "no [[cloth.pin]]");

@@ -7,16 +7,44 @@
 #include <limits>
 
 #include "sim/integrators/scheme.hpp"
+#include "sim/mesh/mesh_cloth.hpp"
 
 namespace unravel {
 
 namespace {
 
+std::size_t patch_of(const ClothModel& model, std::uint32_t p) {
+    std::size_t c = 0;
+    while (p >= model.cloths[c].first + model.cloths[c].count()) ++c;
+    return c;
+}
+
+// Direction of a spring in the plane that touches a mesh at vertex p.
+Vec2 tangent_direction(const MeshCloth& mesh, const std::vector<Vec3>& normals, std::uint32_t p,
+                       std::uint32_t i, std::uint32_t j) {
+    const Vec3& n = normals[p];
+    const Vec3 a = n.unitOrthogonal(), d = mesh.rest[j] - mesh.rest[i];
+    const Vec2 in_plane(a.dot(d), n.cross(a).dot(d));
+    const double length = in_plane.norm();
+    return length > 0 ? Vec2(in_plane / length) : Vec2(1, 0);
+}
+
+// Unit normals at the vertices of a mesh at rest.
+std::vector<Vec3> rest_normals(const MeshCloth& mesh) {
+    std::vector<Vec3> normals(mesh.rest.size(), Vec3::Zero());
+    for (const MeshCloth::Cell& cell : mesh.cells) {
+        const auto x = [&](std::size_t k) { return mesh.rest[cell.vertex[k]]; };
+        const Vec3 n =
+            cell.corners == 4 ? (x(2) - x(0)).cross(x(3) - x(1)) : (x(1) - x(0)).cross(x(2) - x(0));
+        for (std::size_t k = 0; k < cell.corners; ++k) normals[cell.vertex[k]] += n;
+    }
+    for (Vec3& n : normals) n = n.norm() > 0 ? Vec3(n.normalized()) : Vec3::UnitY();
+    return normals;
+}
+
 // Direction of a spring on the flat cloth.
 Vec2 flat_direction(const ClothModel& model, std::uint32_t i, std::uint32_t j) {
-    std::size_t c = 0;
-    while (i >= model.cloths[c].first + model.cloths[c].count()) ++c;
-    const ClothPatch& patch = model.cloths[c];
+    const ClothPatch& patch = model.cloths[patch_of(model, i)];
     const int nu = patch.particles[0], a = static_cast<int>(i - patch.first),
               b = static_cast<int>(j - patch.first);
     int du = b % nu - a % nu;
@@ -41,6 +69,10 @@ ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options
     for (const PinnedGroup& pin : model.pins) {
         for (const std::uint32_t p : pin.particles) held[p] = !std::isfinite(pin.release);
     }
+    std::vector<std::vector<Vec3>> normals(model.cloths.size());
+    for (std::size_t c = 0; c < normals.size(); ++c) {
+        if (!model.cloths[c].grid()) normals[c] = rest_normals(*model.cloths[c].mesh);
+    }
     const auto share_at = [&](double step, ExplicitLimit* out) {
         std::vector<Eigen::Matrix2d> blocks(model.size(), Eigen::Matrix2d::Zero());
         std::vector<double> kappas(model.size(), 0.0);
@@ -50,10 +82,14 @@ ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options
             const double of_spring = kappa(step, 1.0 / std::min(model.mass[i], model.mass[j]), k, d);
             const bool stretch = s < model.springs.stretch_count;
             if (of_spring > (stretch ? splitting.stretch_threshold : splitting.shear_threshold)) continue;
-            const Vec2 u = flat_direction(model, i, j);
-            const Eigen::Matrix2d block = step * (step * k + 2.0 * d) * u * u.transpose();
+            const std::size_t c = patch_of(model, i);
+            const bool grid = model.cloths[c].grid();
+            const std::uint32_t first = model.cloths[c].first;
+            Vec2 u = grid ? flat_direction(model, i, j) : Vec2::Zero();
             for (const std::uint32_t p : {i, j}) {
-                blocks[p] += block;
+                if (!grid)
+                    u = tangent_direction(*model.cloths[c].mesh, normals[c], p - first, i - first, j - first);
+                blocks[p] += step * (step * k + 2.0 * d) * u * u.transpose();
                 kappas[p] = std::max(kappas[p], of_spring);
             }
         }

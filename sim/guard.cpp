@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/mesh/mesh_solid.hpp"
+
 namespace unravel {
 
 namespace {
@@ -58,6 +60,9 @@ std::string particle_name(const ClothModel& model, std::uint32_t p) {
     std::size_t c = 0;
     while (p >= model.cloths[c].first + model.cloths[c].count()) ++c;
     const ClothPatch& patch = model.cloths[c];
+    if (!patch.grid())
+        return fmt::format("particle {} (vertex {}{})", p, p - patch.first + 1,
+                           model.cloths.size() > 1 ? " of cloth " + std::to_string(c) : std::string());
     const auto nu = static_cast<std::uint32_t>(patch.particles[0]);
     const std::string where =
         fmt::format("particle {} (u {}, v {}", p, (p - patch.first) % nu, (p - patch.first) / nu);
@@ -161,8 +166,10 @@ const char* criterion_name(Criterion criterion) {
 bool takes_energy(const ClothModel& model) {
     const auto moves = [](const auto& thing) { return !thing.motion.empty(); };
     const bool blows = model.wind && (!model.wind->velocity.isZero() || !model.wind->keyframes.empty());
-    return blows || std::any_of(model.pins.begin(), model.pins.end(), moves) ||
-           std::any_of(model.solids.begin(), model.solids.end(), moves);
+    const auto deforms = [](const Solid& solid) { return solid.geometry && solid.geometry->deforms(); };
+    return blows || model.stitches.size() > 0 || std::any_of(model.pins.begin(), model.pins.end(), moves) ||
+           std::any_of(model.solids.begin(), model.solids.end(), moves) ||
+           std::any_of(model.solids.begin(), model.solids.end(), deforms);
 }
 
 Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
@@ -181,7 +188,7 @@ Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
     const double spent = report.kinetic + springs + weight * size;
     guard.energy = height + 2.0 * spent;
     guard.total = report.kinetic + report.potential;
-    if (!model.self_collision) guard.rounding = rounding_share * spent;
+    if (!model.has_temporary_springs()) guard.rounding = rounding_share * spent;
     return guard;
 }
 

@@ -9,12 +9,11 @@ void keep_outside(std::span<const Solid> solids, const SolidPoses& poses, const 
         if (constraints.fully(static_cast<std::uint32_t>(p))) return;
         for (std::size_t s = 0; s < solids.size(); ++s) {
             const Vec3 local = poses.next[s].inverse(Eigen::Isometry) * x[p];
-            Vec3 gradient;
-            const double distance = signed_distance(solids[s], local, &gradient);
-            if (distance >= 0) continue;
-            const Vec3 normal = poses.next[s].linear() * gradient;
-            const Vec3 velocity = (x[p] - poses.now[s] * local) / h;
-            x[p] -= distance * normal;
+            const SurfacePoint surface = nearest_surface(solids[s], poses.of(solids[s], s), true, local, 0.0);
+            if (surface.distance >= 0) continue;
+            const Vec3 normal = poses.next[s].linear() * surface.normal;
+            const Vec3 velocity = (x[p] - poses.now[s] * surface.carried) / h;
+            x[p] -= surface.distance * normal;
             const double closing = normal.dot(v[p] - velocity);
             if (closing < 0) v[p] -= closing * normal;
         }

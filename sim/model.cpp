@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/mesh/mesh_cloth.hpp"
+#include "sim/mesh/mesh_links.hpp"
+#include "sim/mesh/mesh_springs.hpp"
 #include "sim/random.hpp"
 #include "sim/scene/placement.hpp"
 
@@ -13,14 +16,15 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// One cloth's grid with its metrics; a and b are the edge lengths of a cell.
+// One cloth's grid with its metrics; a and b are the edge lengths of a cell. A mesh is a row of particles
+// here, and its springs come from sim/mesh.
 struct Grid {
     const Cloth& cloth;
     ClothPatch patch;
     double a, b;
 
     Grid(const Cloth& c, std::uint32_t first) : cloth(c) {
-        patch = {c.name, first, c.particles, c.size, c.wrap == Wrap::tube};
+        patch = {c.name, first, c.particles, c.size, c.wrap == Wrap::tube, c.geometry};
         a = patch.cells_u() > 0 ? c.size[0] / patch.cells_u() : c.size[0];
         b = patch.cells_v() > 0 ? c.size[1] / patch.cells_v() : c.size[1];
     }
@@ -190,7 +194,9 @@ void add_air_cells(const Grid& g, AirCells& air) {
 // cloth, and damped to a fifth of critical.
 SelfCollision fitting(SelfCollision settings, std::span<const Grid> grids, const ClothModel& model) {
     double spacing = infinity;
-    for (const Grid& g : grids) spacing = std::min({spacing, g.a, g.b});
+    for (const Grid& g : grids)
+        spacing = g.patch.grid() ? std::min({spacing, g.a, g.b})
+                                 : std::min(spacing, typical_spacing(*g.patch.mesh));
     if (settings.thickness == 0) settings.thickness = 0.75 * spacing;
     const ExtensionSprings& springs = model.springs;
     if (settings.stiffness == 0 && springs.stretch_count > 0) {
@@ -220,6 +226,12 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
     }
     for (const Grid& g : grids) {
         model.cloths.push_back(g.patch);
+        if (!g.patch.grid()) {
+            const std::vector<double> mass = mesh_masses(g.cloth);
+            model.mass.insert(model.mass.end(), mass.begin(), mass.end());
+            add_mesh_stretch(g.cloth, g.patch.first, model.springs);
+            continue;
+        }
         for (int j = 0; j < g.nv(); ++j) {
             for (int i = 0; i < g.nu(); ++i) {
                 model.mass.push_back(density_at(g.cloth, g.uv(i, j)) * g.width_u(i) * g.width_v(j));
@@ -233,16 +245,32 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
         add_stretch(g, model.springs, springs);
     }
     model.springs.stretch_count = model.springs.size();
-    for (std::size_t c = 0; c < grids.size(); ++c) add_shear(grids[c], model.springs, model.grids[c]);
-    for (std::size_t c = 0; c < grids.size(); ++c) add_bends(grids[c], model.bends, model.grids[c]);
+    // A cloth that is a grid also keeps its springs by direction; `model.grids` has one entry for each of those.
+    for (std::size_t c = 0, grid = 0; c < grids.size(); ++c) {
+        const Grid& g = grids[c];
+        g.patch.grid() ? add_shear(g, model.springs, model.grids[grid++])
+                       : add_mesh_shear(g.cloth, g.patch.first, model.springs);
+    }
+    for (std::size_t c = 0, grid = 0; c < grids.size(); ++c) {
+        const Grid& g = grids[c];
+        g.patch.grid() ? add_bends(g, model.bends, model.grids[grid++])
+                       : add_mesh_bends(g.cloth, g.patch.first, model.bends);
+    }
     for (const Grid& g : grids) place(g, placement);
     for (const Grid& g : grids) add_pins(g, placement, model.pins);
+    for (const Grid& g : grids) {
+        if (!g.patch.grid()) add_stitches(g.cloth, g.patch, placement, model);
+    }
     if (scene.wind) {
         model.wind = scene.wind;
-        for (const Grid& g : grids) add_air_cells(g, model.air);
+        for (const Grid& g : grids)
+            g.patch.grid() ? add_air_cells(g, model.air) : add_mesh_air(g.cloth, g.patch.first, model.air);
         connect_cells(model.size(), model.air);
     }
-    if (scene.self_collision) model.self_collision = fitting(*scene.self_collision, grids, model);
+    if (scene.self_collision) {
+        model.self_collision = fitting(*scene.self_collision, grids, model);
+        find_mesh_neighbours(model);
+    }
     model.spring_adjacency = adjacency_of(model.size(), model.springs.i, model.springs.j);
     model.bend_adjacency = adjacency_of(model.size(), model.bends.i, model.bends.j);
     return model;

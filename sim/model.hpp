@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,13 +16,17 @@
 
 namespace unravel {
 
-/// One cloth's share of the particles: the grid i + j·particles[0] from `first` on, i along u.
+/// One cloth's share of the particles: the grid i + j·particles[0] from `first` on, i along u; or a mesh.
 struct ClothPatch {
     std::string name;
     std::uint32_t first = 0;
     std::array<int, 2> particles{0, 0};
     std::array<double, 2> size{0, 0};  ///< m
     bool tube = false;                 ///< closed in u
+    /// Null: a grid. Otherwise `particles` is {vertices, 1}, particle first + v is vertex v, and what belongs
+    /// to grids (rows, cells, families of springs by direction) is not there.
+    std::shared_ptr<const MeshCloth> mesh;
+    bool grid() const { return mesh == nullptr; }
     std::uint32_t count() const {
         return static_cast<std::uint32_t>(particles[0]) * static_cast<std::uint32_t>(particles[1]);
     }
@@ -43,6 +48,23 @@ struct PinnedGroup {
     double release = 0;  ///< s; +∞: never
 };
 
+/// Particles near each other along a mesh, which never collide: those of p are sorted in
+/// list[start[p] … start[p+1]).
+struct Neighbours {
+    std::vector<std::uint32_t> start;  ///< (particles + 1) or empty where every cloth is a grid
+    std::vector<std::uint32_t> list;
+};
+
+/// Stitches that sew a mesh together: springs whose rest length shrinks to nothing, linearly until `closed`.
+/// They act in extension only, and stand beside the temporary springs of self-collision.
+struct Stitches {
+    std::vector<std::uint32_t> i, j;         ///< (stitches) particles, i < j
+    std::vector<double> start;               ///< (stitches) distance at t = 0 [m]
+    std::vector<double> stiffness, damping;  ///< (stitches) N/m, N·s/m
+    std::vector<double> closed;              ///< (stitches) s
+    std::size_t size() const { return i.size(); }
+};
+
 /// Everything that does not change while the cloth moves: topology, rest shape, masses, springs, pins, and
 /// the effects that the scene calls for. Const once built.
 struct ClothModel {
@@ -53,13 +75,17 @@ struct ClothModel {
     BendSprings bends;
     Adjacency bend_adjacency;
     std::vector<GridSprings> grids;  ///< one per cloth that is a grid: its springs by direction
+    Stitches stitches;  ///< empty where no mesh has seams
     std::vector<PinnedGroup> pins;
     Vec3 gravity{0, 0, 0};                        ///< m/s²
     std::vector<Solid> solids;                    ///< what the cloth meets; empty: no contact at all
     std::optional<Wind> wind;                     ///< absent: no air at all
     AirCells air;                                 ///< empty without wind
     std::optional<SelfCollision> self_collision;  ///< absent: none; what the scene leaves open is filled in
+    Neighbours neighbours;                        ///< of particles of meshes; empty without self-collision
     std::size_t size() const { return mass.size(); }
+    /// Whether there are springs besides the cloth's own: stitches, or those of self-collision.
+    bool has_temporary_springs() const { return self_collision.has_value() || stitches.size() > 0; }
 };
 
 /// Positions and velocities at t = 0. (particles) [m], [m/s]

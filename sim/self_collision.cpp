@@ -103,6 +103,11 @@ bool moved_too_far(std::span<const Vec3> x, std::span<const Vec3> before, double
 bool are_neighbours(const ClothModel& model, std::uint32_t p, std::uint32_t q) {
     for (const ClothPatch& patch : model.cloths) {
         if (p >= patch.first + patch.count()) continue;
+        if (!patch.grid()) {
+            const auto begin = model.neighbours.list.begin();
+            return std::binary_search(begin + model.neighbours.start[p],
+                                      begin + model.neighbours.start[p + 1], q);
+        }
         if (p < patch.first || q < patch.first || q >= patch.first + patch.count()) return false;
         const int nu = patch.particles[0], a = static_cast<int>(p - patch.first),
                   b = static_cast<int>(q - patch.first);
@@ -117,15 +122,58 @@ bool are_neighbours(const ClothModel& model, std::uint32_t p, std::uint32_t q) {
     return false;
 }
 
+namespace {
+
+// Seams come first: damped springs that shrink to nothing, and pull only.
+void pull_stitches(const Stitches& stitches, std::span<const double> mass, std::span<const Vec3> x,
+                   std::span<const Vec3> v, double t, double h, double threshold,
+                   SelfCollisionWorkspace& ws) {
+    ExtensionSprings& springs = ws.springs;
+    springs.i.assign(stitches.i.begin(), stitches.i.end());
+    springs.j.assign(stitches.j.begin(), stitches.j.end());
+    springs.stiffness.assign(stitches.stiffness.begin(), stitches.stiffness.end());
+    springs.damping.assign(stitches.damping.begin(), stitches.damping.end());
+    springs.rest.resize(stitches.size());
+    ws.forces.resize(stitches.size());
+    for (std::size_t s = 0; s < stitches.size(); ++s) {
+        const double left = stitches.closed[s] > 0 ? std::max(1.0 - t / stitches.closed[s], 0.0) : 0.0;
+        const double rest = springs.rest[s] = left * stitches.start[s];
+        const std::uint32_t i = springs.i[s], j = springs.j[s];
+        const Vec3 d = x[j] - x[i];
+        const double length = d.norm(), k = stitches.stiffness[s], damping = stitches.damping[s];
+        if (length <= rest) {
+            ws.forces.force[s].setZero();
+            ws.forces.state[s] = SpringState::inactive;
+            continue;
+        }
+        const Vec3 u = d / length;
+        ws.forces.force[s] = (k * (length - rest) + damping * u.dot(v[j] - v[i])) * u;
+        ws.forces.direction[s] = u;
+        ws.forces.transverse[s] = k * (1 - rest / length);
+        const bool is_explicit = kappa(h, 1.0 / std::min(mass[i], mass[j]), k, damping) <= threshold;
+        ws.forces.state[s] = is_explicit ? SpringState::explicit_ : SpringState::implicit;
+    }
+}
+
+}  // namespace
+
+void temporary_springs(const ClothModel& model, double t, std::span<const Vec3> x, std::span<const Vec3> v,
+                       double h, double threshold, SelfCollisionWorkspace& ws) {
+    pull_stitches(model.stitches, model.mass, x, v, t, h, threshold, ws);
+    if (model.self_collision) self_collide(model, x, v, h, threshold, ws);
+    ws.adjacency = adjacency_of(x.size(), ws.springs.i, ws.springs.j);
+}
+
 void self_collide(const ClothModel& model, std::span<const Vec3> x, std::span<const Vec3> v, double h,
                   double threshold, SelfCollisionWorkspace& ws) {
     const SelfCollision& settings = *model.self_collision;
+    const std::size_t first = model.stitches.size();
     const double radius = search_share * settings.thickness;
     if (moved_too_far(x, ws.x_searched, 0.5 * (radius - settings.thickness))) search(model, x, radius, ws);
 
     ExtensionSprings& springs = ws.springs;
-    springs.i.clear();
-    springs.j.clear();
+    springs.i.resize(first);
+    springs.j.resize(first);
     ws.least_distance = settings.thickness;
     for (std::size_t k = 0; k < ws.candidate_i.size(); ++k) {
         const double distance = (x[ws.candidate_j[k]] - x[ws.candidate_i[k]]).norm();
@@ -134,11 +182,16 @@ void self_collide(const ClothModel& model, std::span<const Vec3> x, std::span<co
         springs.i.push_back(ws.candidate_i[k]);
         springs.j.push_back(ws.candidate_j[k]);
     }
-    springs.rest.assign(springs.size(), settings.thickness);
-    springs.stiffness.assign(springs.size(), settings.stiffness);
-    springs.damping.assign(springs.size(), settings.damping);
+    const auto fill = [&](std::vector<double>& values, double value) {
+        values.resize(first);
+        values.resize(springs.size(), value);
+    };
+    fill(springs.rest, settings.thickness);
+    fill(springs.stiffness, settings.stiffness);
+    fill(springs.damping, settings.damping);
     ws.forces.resize(springs.size());
-    parallel_each(springs.size(), [&](std::size_t s) {
+    parallel_each(springs.size() - first, [&](std::size_t k) {
+        const std::size_t s = first + k;
         const std::uint32_t i = springs.i[s], j = springs.j[s];
         const Vec3 d = x[j] - x[i];
         const double length = d.norm();
@@ -154,7 +207,6 @@ void self_collide(const ClothModel& model, std::span<const Vec3> x, std::span<co
         ws.forces.transverse[s] = 0;
         ws.forces.state[s] = is_explicit ? SpringState::explicit_ : SpringState::implicit;
     });
-    ws.adjacency = adjacency_of(x.size(), springs.i, springs.j);
 }
 
 }  // namespace unravel

@@ -26,7 +26,7 @@ void add_forces(const ClothModel& model, StepWorkspace& ws) {
             }
         };
         gather(model.spring_adjacency, ws.extension.force);
-        if (model.self_collision) gather(ws.self.adjacency, ws.self.forces.force);
+        if (model.has_temporary_springs()) gather(ws.self.adjacency, ws.self.forces.force);
         gather(model.bend_adjacency, ws.bend_is_implicit ? ws.implicit_bend.forces.force : ws.bend);
         const Vec3 friction = rubbed ? ws.friction[p] : Vec3(Vec3::Zero());
         ws.impulse[p] = friction + stage.h_force * f + model.mass[p] * (stage.v[p] - stage.v_at[p]);
@@ -128,7 +128,7 @@ Families families_of(const ClothModel& model, const StepWorkspace& ws) {
     Families families;
     const auto add = [&](const SpringFamily& family) { families.list[families.count++] = family; };
     add({&model.springs, &model.spring_adjacency, &ws.extension});
-    if (model.self_collision)
+    if (model.has_temporary_springs())
         add({&ws.self.springs, &ws.self.adjacency, &ws.self.forces, ws.drift_from_start});
     if (ws.bend_is_implicit)
         add({&ws.implicit_bend.springs, &model.bend_adjacency, &ws.implicit_bend.forces});
@@ -157,8 +157,8 @@ void linearise(const ClothModel& model, const StepOptions& options, double h, St
                StepWorkspace& ws, StepReport& report) {
     const Stage& stage = ws.stage;
     const Splitting splitting = scheme_of(options.integrator).splitting(options.threshold);
-    if (model.self_collision) {
-        self_collide(model, stage.x_at, stage.v_at, h, splitting.stretch_threshold, ws.self);
+    if (model.has_temporary_springs()) {
+        temporary_springs(model, ws.t_end, stage.x_at, stage.v_at, h, splitting.stretch_threshold, ws.self);
         timer.lap(report.times.collision);
     }
     look_ahead(model, options, ws);
@@ -176,7 +176,7 @@ void linearise(const ClothModel& model, const StepOptions& options, double h, St
     };
     drift_from(at, ws.drift);
     ws.drift_from_start.clear();
-    if (model.self_collision && !ws.ahead.empty()) drift_from(stage.x_at, ws.drift_from_start);
+    if (model.has_temporary_springs() && !ws.ahead.empty()) drift_from(stage.x_at, ws.drift_from_start);
     timer.lap(report.times.forces);
 }
 

@@ -123,6 +123,7 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
     constrain(model, view, state, h, ws);
     if (constrained) timer.lap(report.times.contact);
 
+    ws.t_end = state.t + h;
     // Forces at (x*, v*) (Sec. 2) and the adaptive IMEX splitting (Sec. 3.5)
     ws.taut.clear();
     if (options.activation == Activation::predicted) predict_taut(model, state.dv, ws);
@@ -171,7 +172,8 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
     for (const Constraint& c : ws.constraints.all()) ++(c.free == 0 ? report.constrained : report.partly);
     report.contacts = static_cast<std::uint32_t>(ws.touches.size());
     count_springs(families_of(model, ws), report);
-    report.self_contacts = static_cast<std::uint32_t>(ws.self.springs.size());
+    report.self_contacts =
+        static_cast<std::uint32_t>(model.self_collision ? ws.self.springs.size() - model.stitches.size() : 0);
     report.self_distance = ws.self.least_distance;
     if (options.measure) measure(model, ws.bend_limit, state, ws.measure, report);
     timer.lap(report.times.measure);

@@ -49,7 +49,8 @@ struct StepWorkspace {
     ImplicitBend implicit_bend;  ///< empty where they are explicit
     bool bend_is_implicit = false;
     std::vector<Vec3> air;               ///< (cells) N; empty without wind
-    SelfCollisionWorkspace self;         ///< empty without self-collision
+    double t_end = 0;                    ///< s, the end of the step: what stitches are to have reached
+    SelfCollisionWorkspace self;         ///< empty without self-collision and stitches
     std::vector<std::uint8_t> taut;      ///< (springs) 1: slack at x*, taut at the end; or empty
     std::vector<Vec3> ahead;             ///< (particles) where implicit springs are linearised; empty: at x*
     std::vector<Vec3> drift_from_start;  ///< (particles) drift for those that are linearised at x* even so

@@ -77,6 +77,7 @@ void write_failure(const RunFolder& folder, const Scene& scene, std::uint64_t sc
     if (failed) throw OutputError(folder.failure(), failed.value());
     const FrameRecord record = present_record(simulation);
     write_whole_file(folder.failure() / "failure.json", failure_json(simulation, error).dump(2) + "\n");
+    copy_named_files(folder.failure(), scene, folder.root);
     write_whole_file(folder.failure() / "scene.toml", scene_to_toml(scene));
     write_record(folder.failure() / "last_good.state", scene_hash, record);
     try {

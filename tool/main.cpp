@@ -155,6 +155,14 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1, 4));
     sheet->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
         ->capture_default_str();
+    CLI::App* exported =
+        takes(command("export", "a cached run's geometry for other programs, frame by frame", command_export),
+              "RUN_DIR", "folder of the run");
+    exported->add_option("--format", options.format, "obj, ply, pc2, mdd or glb (docs/geometry.md)")
+        ->check(CLI::IsMember({"obj", "ply", "pc2", "mdd", "glb"}))
+        ->required();
+    exported->add_option("-o", options.output, "folder for the files (default: RUN_DIR/export/FORMAT)");
+    exported->add_option("--frames", options.frames, "A-B: only these frames");
     CLI::App* accuracy = takes(
         command("accuracy", "what accuracy costs in time: integrators, steps, thresholds and tolerances",
                 command_accuracy),

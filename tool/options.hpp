@@ -63,6 +63,7 @@ struct Options {
     bool map = false;                         ///< stability: the (stiffness, step) map
     int frame = 0, step = 0;                  ///< inspect: --frame, and --step within it (0: its last)
     std::int64_t particle = -1, spring = -1;  ///< inspect; −1: none asked for
+    std::string format = "obj";               ///< export
     bool quick = false;                       ///< reproduce
     std::string what;                         ///< schema: scene, run or stats
     ClusterOptions cluster;
@@ -77,6 +78,7 @@ int command_run(const Options& options);
 int command_simulate(const Options& options);
 int command_render(const Options& options);
 int command_sheet(const Options& options);
+int command_export(const Options& options);
 int command_accuracy(const Options& options);
 int command_inspect(const Options& options);
 int command_reproduce(const Options& options);

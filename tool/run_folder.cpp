@@ -7,6 +7,8 @@
 
 #include "base/file_errors.hpp"
 #include "base/whole_file.hpp"
+#include "sim/mesh/mesh_solid.hpp"
+#include "sim/scene/limits.hpp"
 #include "sim/scene/load.hpp"
 #include "tool/clip_view.hpp"
 
@@ -65,19 +67,49 @@ std::uint64_t scene_hash(const Scene& scene) {
 
 namespace {
 
-// The run's own copies of the scene's pictures, under the same names: the folder can be moved and drawn
-// again.
-void copy_textures(const RunFolder& folder, const Scene& scene, const fs::path& textures) {
-    for (const ClothLook& look : scene.look.cloth) {
-        const fs::path name = fs::path(look.texture).lexically_normal();
+std::vector<std::string> named_files(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const ClothLook& look : scene.look.cloth) names.push_back(look.texture);
+    for (const Cloth& cloth : scene.cloths) names.push_back(cloth.mesh.file);
+    for (const Solid& solid : scene.solids) {
+        names.push_back(solid.mesh.file);
+        if (!solid.geometry) continue;
+        names.insert(names.end(), solid.geometry->sample_files.begin(), solid.geometry->sample_files.end());
+    }
+    return names;
+}
+
+}  // namespace
+
+void copy_named_files(const fs::path& folder, const Scene& scene, const fs::path& home) {
+    for (const std::string& file : named_files(scene)) {
+        const fs::path name = fs::path(file).lexically_normal();
         if (name.empty() || *name.begin() == "..") continue;
-        const fs::path from = textures / name, to = folder.root / name;
+        const fs::path from = home / name, to = folder / name;
         std::error_code error;
         if (fs::equivalent(from, to, error)) continue;
         create_folder(to.parent_path());
-        if (!fs::copy_file(from, to, fs::copy_options::overwrite_existing, error))
-            throw OutputError(to, fmt::format("copying {} failed: {}", from.string(), error.message()));
+        // Whole or not at all: a run that is killed here must find its meshes again.
+        write_whole_file(to, read_whole_file(from, max_mesh_bytes));
     }
+}
+
+namespace {
+
+// The hash alone would tell that a mesh has changed, but not to a person.
+void refuse_changed_meshes(const RunFolder& folder, const Scene& before, const Scene& now) {
+    const auto compare = [&](const auto& a, const auto& b) {
+        for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+            if (a[k].mesh.file != b[k].mesh.file || a[k].mesh.hash == b[k].mesh.hash) continue;
+            throw FolderError(fmt::format(
+                "'{}' was made from another scene (the mesh \"{}\" of {} has changed since; the run's own "
+                "copy "
+                "is in its folder): --force starts anew in its place, -o DIR puts this one elsewhere",
+                folder.root.string(), b[k].mesh.file, b[k].name));
+        }
+    };
+    compare(before.cloths, now.cloths);
+    compare(before.solids, now.solids);
 }
 
 }  // namespace
@@ -112,6 +144,7 @@ std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing exi
     if (there && existing == Existing::resume && fs::exists(folder.scene())) {
         const std::string before = read_whole_text(folder.scene(), largest_scene);
         const Scene earlier = parse_scene(before, folder.scene().string(), folder.root);
+        refuse_changed_meshes(folder, earlier, scene);
         if (simulated_part(earlier) != simulated_part(scene)) {
             throw FolderError(fmt::format(
                 "'{}' was made from another scene ({}): --force starts anew in its place, -o DIR "
@@ -122,7 +155,7 @@ std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing exi
     // What stopped an earlier run is no news of this one.
     std::error_code error;
     fs::remove_all(folder.failure(), error);
-    if (!textures.empty()) copy_textures(folder, scene, textures);
+    if (!textures.empty()) copy_named_files(folder.root, scene, textures);
     write_whole_file(folder.scene(), scene_to_toml(scene));
     return scene_hash(scene);
 }

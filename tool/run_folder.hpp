@@ -45,6 +45,11 @@ enum class Existing { refuse, resume, replace };
 std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing existing,
                        const std::filesystem::path& textures = {});
 
+/// A folder's own copies of the pictures and meshes that the scene names relative to `home`, under the same
+/// names: the folder can be moved, drawn again and gone on with. Throws OutputError.
+void copy_named_files(const std::filesystem::path& folder, const Scene& scene,
+                      const std::filesystem::path& home);
+
 /// Frames 0 … k−1 that the cache holds whole and undamaged; the first that is missing ends the list.
 int cached_frames(const RunFolder& folder, const Scene& scene, std::uint64_t scene_hash,
                   std::size_t particles, std::size_t springs);

@@ -37,6 +37,7 @@ void refine(int count, bool closed, int factor, At&& at, Put&& put) {
 int display_level(const Look& look, const ClothPatch& patch) {
     // Cells of this many fill a picture without being told apart.
     constexpr int enough = 6000, most = 2;
+    if (!patch.grid()) return 0;  // a mesh is shown as it is
     if (look.subdivide >= 0) return look.subdivide;
     int level = 0;
     while (level < most && (patch.cells_u() * patch.cells_v() << (2 * level)) < enough) ++level;

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <stdexcept>
 
 #include "render/png.hpp"
+#include "sim/mesh/mesh_cloth.hpp"
+#include "sim/mesh/mesh_solid.hpp"
+#include "sim/mesh/surface.hpp"
 #include "sim/solids/motion.hpp"
 #include "tool/subdivision.hpp"
 #include "tool/wire_colors.hpp"
@@ -42,6 +46,8 @@ SolidShape shape_of(Shape shape) {
             return SolidShape::cylinder;
         case Shape::capsule:
             return SolidShape::capsule;
+        case Shape::mesh:
+            return SolidShape::mesh;
     }
     return SolidShape::sphere;
 }
@@ -82,10 +88,51 @@ ClothMesh mesh_of(const ClothPatch& patch, const ClothAppearance& appearance, in
     return mesh;
 }
 
+// Texture coordinates for a mesh that has none: its rest shape seen along the axis that it is thinnest on.
+// [m]
+Vec2 seen_flat(const MeshCloth& mesh, const Vec3& x) {
+    Eigen::Index thin = 0;
+    mesh.extent().minCoeff(&thin);
+    return thin == 0 ? Vec2(x.z(), x.y()) : thin == 1 ? Vec2(x.x(), x.z()) : Vec2(x.x(), x.y());
+}
+
+// A mesh as triangles. A vertex with several texture coordinates becomes a display vertex for each.
+ClothMesh mesh_of_faces(const ClothPatch& patch, const ClothAppearance& appearance) {
+    ClothMesh mesh;
+    mesh.appearance = appearance;
+    const ClothSurface surface = surface_of(patch);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
+    const auto vertex = [&](const ClothSurface::Face& face, std::size_t k) {
+        const auto [found, is_new] =
+            known.try_emplace({face.vertex[k], face.uv[k]}, static_cast<std::uint32_t>(mesh.particle.size()));
+        if (is_new) {
+            const Vec2 uv = face.uv[k] == no_index
+                                ? seen_flat(*patch.mesh, patch.mesh->rest[face.vertex[k]])
+                                : Vec2(surface.uvs[face.uv[k]].cwiseProduct(surface.metres));
+            mesh.particle.push_back(patch.first + face.vertex[k]);
+            mesh.uv.push_back(uv.cast<float>());
+        }
+        return found->second;
+    };
+    for (const ClothSurface::Face& face : surface.faces) {
+        const std::uint32_t a = vertex(face, 0), b = vertex(face, 1), c = vertex(face, 2);
+        mesh.triangles.push_back({a, b, c});
+        if (face.corners == 4) mesh.triangles.push_back({a, c, vertex(face, 3)});
+    }
+    return mesh;
+}
+
 // A plane that faces straight up is drawn as the ground.
 bool is_ground(const Solid& solid) {
     return solid.shape == Shape::plane && solid.motion.empty() &&
            (rotation_from_degrees(solid.rotation) * Vec3::UnitY()).y() > 0.9999;
+}
+
+// Radius about its centre within which a solid is.
+double reach_of(const Solid& solid) {
+    if (solid.shape == Shape::mesh) return solid.geometry->reach;
+    if (solid.shape == Shape::box) return 0.5 * solid.size.norm();
+    return solid.shape == Shape::sphere ? solid.radius : solid.radius + 0.5 * solid.height;
 }
 
 float ground_height(const Scene& scene, const Placement& placement) {
@@ -96,8 +143,7 @@ float ground_height(const Scene& scene, const Placement& placement) {
     }
     if (std::isfinite(lowest)) return static_cast<float>(lowest);
     for (const Solid& solid : scene.solids) {
-        const double reach =
-            solid.shape == Shape::box ? 0.5 * solid.size.norm() : solid.radius + 0.5 * solid.height;
+        const double reach = reach_of(solid);
         if (solid.shape != Shape::plane) lowest = std::min(lowest, solid.center.y() - reach);
     }
     // A hanging cloth may swing down to its own size below its highest point.
@@ -116,10 +162,7 @@ void set_bounds(const Scene& scene, const Placement& placement, DrawScene& out) 
     for (const Vec3& x : placement.x) include(x.cast<float>());
     for (const Solid& solid : scene.solids) {
         if (solid.shape == Shape::plane) continue;
-        const double reach = solid.shape == Shape::box      ? 0.5 * solid.size.norm()
-                             : solid.shape == Shape::sphere ? solid.radius
-                                                            : solid.radius + 0.5 * solid.height;
-        const Vec3f r = Vec3f::Constant(static_cast<float>(reach)), c = solid.center.cast<float>();
+        const Vec3f r = Vec3f::Constant(static_cast<float>(reach_of(solid))), c = solid.center.cast<float>();
         include(c - r);
         include(c + r);
     }
@@ -168,9 +211,11 @@ DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Pla
             appearance.period = static_cast<float>(look.scale);
             appearance.texture = look.texture;
         }
-        const int level = display_level(scene.look, model.cloths[c]);
-        out.cloths.push_back(mesh_of(model.cloths[c], appearance, level, first));
-        if (level > 0) first += FineGrid(model.cloths[c], level).size();
+        const ClothPatch& patch = model.cloths[c];
+        const int level = display_level(scene.look, patch);
+        out.cloths.push_back(patch.grid() ? mesh_of(patch, appearance, level, first)
+                                          : mesh_of_faces(patch, appearance));
+        if (level > 0) first += FineGrid(patch, level).size();
         if (!appearance.texture.empty() && !textures.empty())
             out.cloths.back().texture = read_png(textures / appearance.texture);
     }
@@ -185,6 +230,11 @@ DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Pla
         mesh.height = static_cast<float>(solid.height);
         mesh.round = static_cast<float>(solid.round);
         mesh.size = solid.size.cast<float>();
+        if (solid.geometry) {
+            mesh.triangles = solid.geometry->triangles;
+            mesh.deforms = solid.geometry->deforms();
+            for (const Vec3& x : solid.geometry->rest) mesh.positions.push_back(x.cast<float>());
+        }
         mesh.color = parse_color(solid.color.empty() ? scene.look.solid : solid.color);
         out.solids.push_back(mesh);
     }
@@ -222,8 +272,16 @@ void add_fine_grids(const Scene& scene, const ClothModel& model, DrawFrame& out)
 
 void pose_solids(const Scene& scene, double t, DrawFrame& out) {
     out.solid_poses.clear();
-    for (const Solid& solid : scene.solids)
-        if (!is_ground(solid)) out.solid_poses.push_back(solid_pose(solid, t).cast<float>());
+    out.solid_positions.clear();
+    for (const Solid& solid : scene.solids) {
+        if (is_ground(solid)) continue;
+        out.solid_poses.push_back(solid_pose(solid, t).cast<float>());
+        std::vector<Vec3f>& positions = out.solid_positions.emplace_back();
+        if (!solid.geometry || !solid.geometry->deforms()) continue;
+        std::vector<Vec3> now;
+        solid.geometry->positions_at(t, now);
+        for (const Vec3& x : now) positions.push_back(x.cast<float>());
+    }
 }
 
 // Where a particle was at share s of the way from one frame to the next: Hermite's cubic through both places

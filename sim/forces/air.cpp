@@ -25,13 +25,14 @@ double gust_noise(const Gust& gust, double t) {
 void connect_cells(std::size_t particles, AirCells& air) {
     air.start.assign(particles + 1, 0);
     for (const auto& corners : air.corners) {
-        for (const std::uint32_t p : corners) ++air.start[p + 1];
+        for (std::size_t k = 0; k < corner_count(corners); ++k) ++air.start[corners[k] + 1];
     }
     for (std::size_t p = 0; p < particles; ++p) air.start[p + 1] += air.start[p];
     air.cells.resize(4 * air.corners.size());
     std::vector<std::uint32_t> next(air.start.begin(), air.start.end() - 1);
     for (std::uint32_t c = 0; c < air.corners.size(); ++c) {
-        for (const std::uint32_t p : air.corners[c]) air.cells[next[p]++] = c;
+        const auto& corners = air.corners[c];
+        for (std::size_t k = 0; k < corner_count(corners); ++k) air.cells[next[corners[k]]++] = c;
     }
 }
 
@@ -64,11 +65,13 @@ void air_forces(const AirCells& air, const Wind& wind, double t, double h, std::
         force[c].setZero();
         if (area == 0) return;
         const Vec3 n = area_vector / area;
-        const Vec3 relative = w - 0.25 * (v[p] + v[q] + v[r] + v[s]);
+        const bool triangle = r == s;
+        const Vec3 relative =
+            w - (triangle ? Vec3((v[p] + v[q] + v[r]) / 3) : Vec3(0.25 * (v[p] + v[q] + v[r] + v[s])));
         const double along = n.dot(relative);
         // The lightest corner decides how much a cell bears: it takes a quarter of it from each of up to four
-        // cells.
-        const double bound = std::min({mass[p], mass[q], mass[r], mass[s]}) / h;
+        // cells; of triangles a third from each of up to six.
+        const double bound = (triangle ? 0.5 : 1.0) * std::min({mass[p], mass[q], mass[r], mass[s]}) / h;
         const double half = 0.5 * wind.density * area;
         const double drag = std::min(half * wind.drag * std::abs(along), bound);
         const double lift = std::min(half * wind.lift * relative.norm(), bound);
@@ -78,8 +81,10 @@ void air_forces(const AirCells& air, const Wind& wind, double t, double h, std::
 
 void add_air(const AirCells& air, std::span<const Vec3> force, double h, std::span<Vec3> impulse) {
     parallel_each(impulse.size(), [&](std::size_t p) {
-        for (std::uint32_t k = air.start[p]; k < air.start[p + 1]; ++k)
-            impulse[p] += 0.25 * h * force[air.cells[k]];
+        for (std::uint32_t k = air.start[p]; k < air.start[p + 1]; ++k) {
+            const std::uint32_t c = air.cells[k];
+            impulse[p] += (corner_count(air.corners[c]) == 3 ? h / 3 : 0.25 * h) * force[c];
+        }
     });
 }
 

@@ -117,8 +117,25 @@ void check_solids(const Checking& check) {
     }
 }
 
-void check_looks(const Checking& check, const std::filesystem::path& folder) {
+ContainedFile contained_file(const std::filesystem::path& folder, const std::string& name,
+                             std::string_view kind) {
     namespace fs = std::filesystem;
+    const fs::path home = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder);
+    // Links are resolved first: what counts is where the file really is.
+    std::error_code error;
+    fs::path file = fs::weakly_canonical(home / name, error);
+    const bool inside =
+        !error && std::mismatch(home.begin(), home.end(), file.begin(), file.end()).first == home.end();
+    if (fs::path(name).is_absolute() || !inside)
+        return {{},
+                fmt::format("the {} \"{}\" is outside the scene's folder", kind, name),
+                "put it beside the scene and name it relative to it"};
+    if (!fs::is_regular_file(file, error))
+        return {{}, fmt::format("no file \"{}\"", name), "it is looked for in the scene's folder"};
+    return {std::move(file), {}, {}};
+}
+
+void check_looks(const Checking& check, const std::filesystem::path& folder) {
     for (std::size_t i = 0; i < check.scene.cameras.size(); ++i) {
         const Camera& camera = check.scene.cameras[i];
         const std::string path = fmt::format("camera[{}]", i);
@@ -133,22 +150,12 @@ void check_looks(const Checking& check, const std::filesystem::path& folder) {
     }
     check_names(check, check.scene.cameras, "camera");
 
-    const fs::path home = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder);
     for (std::size_t i = 0; i < check.scene.look.cloth.size(); ++i) {
         const std::string& texture = check.scene.look.cloth[i].texture;
         if (texture.empty()) continue;
         const std::string path = fmt::format("look.cloth[{}].texture", i);
-        // Links are resolved first: what counts is where the file really is.
-        std::error_code error;
-        const fs::path file = fs::weakly_canonical(home / texture, error);
-        const bool inside =
-            !error && std::mismatch(home.begin(), home.end(), file.begin(), file.end()).first == home.end();
-        if (fs::path(texture).is_absolute() || !inside)
-            check.report(path, fmt::format("the texture \"{}\" is outside the scene's folder", texture),
-                         "put it beside the scene and name it relative to it");
-        else if (!fs::is_regular_file(file, error))
-            check.report(path, fmt::format("no file \"{}\"", texture),
-                         "it is looked for in the scene's folder");
+        const ContainedFile found = contained_file(folder, texture, "texture");
+        if (!found.what.empty()) check.report(path, found.what, found.hint);
     }
 }
 

@@ -28,9 +28,19 @@ public:
     HeldSearch(const Cloth& cloth, const Solid& solid)
         : cloth_(cloth), solid_(solid), to_solid_(start_pose(solid).inverse()) {}
 
-    std::optional<Held> find() const { return find(0, cloth_.particles[0], 0, cloth_.particles[1]); }
+    std::optional<Held> find() const {
+        return cloth_.geometry ? find_vertex() : find(0, cloth_.particles[0], 0, cloth_.particles[1]);
+    }
 
 private:
+    std::optional<Held> find_vertex() const {
+        for (int v = 0; v < cloth_.particles[0]; ++v) {
+            const double distance = signed_distance(solid_, to_solid_ * placed_particle(cloth_, v, 0));
+            if (distance < -solid_.offset) return Held{v, 0, -distance};
+        }
+        return {};
+    }
+
     std::optional<Held> find(int i0, int i1, int j0, int j1) const {
         const int i = (i0 + i1) / 2, j = (j0 + j1) / 2;
         const double distance = signed_distance(solid_, to_solid_ * placed_particle(cloth_, i, j));
@@ -60,6 +70,14 @@ private:
     Eigen::Isometry3d to_solid_;
 };
 
+// False: its mesh has faults of its own.
+bool loaded(const Cloth& cloth) {
+    return cloth.mesh.file.empty() || cloth.geometry;
+}
+bool loaded(const Solid& solid) {
+    return solid.shape != Shape::mesh || solid.geometry;
+}
+
 std::string quoted_name(const std::string& kind, const std::string& name) {
     return name.empty() ? "the " + kind : fmt::format("the {} \"{}\"", kind, name);
 }
@@ -82,14 +100,17 @@ void check_start(const Checking& check) {
         for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
             const std::string path = fmt::format("cloth[{}]", c);
             if (!check.places.sound(path + ".particles") || !check.places.sound_itself(path)) continue;
+            if (!loaded(scene.cloths[c]) || !loaded(scene.solids[k])) continue;
             const std::optional<Held> held = HeldSearch(scene.cloths[c], scene.solids[k]).find();
             if (!held) continue;
-            check.report(
-                fmt::format("solid[{}]", k),
-                fmt::format("{} holds {} at the start: particle ({}, {}) is {:.3g} m inside",
-                            quoted_name("solid", scene.solids[k].name),
-                            quoted_name("cloth", scene.cloths[c].name), held->i, held->j, held->depth),
-                "move one of them");
+            const std::string particle = scene.cloths[c].geometry
+                                             ? fmt::format("vertex {}", held->i + 1)
+                                             : fmt::format("particle ({}, {})", held->i, held->j);
+            check.report(fmt::format("solid[{}]", k),
+                         fmt::format("{} holds {} at the start: {} is {:.3g} m inside",
+                                     quoted_name("solid", scene.solids[k].name),
+                                     quoted_name("cloth", scene.cloths[c].name), particle, held->depth),
+                         "move one of them");
         }
     }
 }
@@ -133,6 +154,9 @@ void check_pin(const Fields& cloth_fields, Fields& pin_fields, const Cloth& clot
         case PinTarget::disc:
             test_nearest("disc", pin.disc.center);
             break;
+        case PinTarget::group:
+        case PinTarget::within:
+            break;  // of meshes, which are read later
     }
 }
 

@@ -16,6 +16,9 @@ void describe(Fields&, Region&, const Cloth&);
 /// `names`: where a pin names several corners or edges, all of them; it is read as one pin for each.
 void describe(Fields&, Pin&, std::vector<std::string>& names);
 void describe(Fields&, Keyframe&);
+/// A mesh's file under the key `file`, and what else is said of it.
+void describe(Fields&, MeshFile&, const Key& file);
+void describe(Fields&, MeshFrames&, bool applies);
 void describe(Fields&, Solid&);
 void describe(Fields&, Wind&);
 void describe(Fields&, WindKey&);
@@ -37,6 +40,9 @@ auto in_order() {
         }
     };
 }
+
+/// The key that names what a pin catches.
+std::string_view pin_target_name(PinTarget);
 
 // Bounds that several tables share. They are wide: what is outside is a slip or a wrong unit.
 inline constexpr double max_length = 1e4;   // m

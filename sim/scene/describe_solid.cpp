@@ -4,7 +4,7 @@ namespace unravel {
 
 namespace {
 
-constexpr std::string_view shapes[] = {"plane", "sphere", "box", "cylinder", "capsule"};
+constexpr std::string_view shapes[] = {"plane", "sphere", "box", "cylinder", "capsule", "mesh"};
 constexpr Bounds length_bounds{1e-4, 1000, false, "m"};
 constexpr Bounds friction_bounds{0, 100};
 
@@ -16,12 +16,30 @@ void describe(Fields& f, Friction& friction) {
 
 }  // namespace
 
+void describe(Fields& f, MeshFrames& frames, bool applies) {
+    f.text({"mesh_frames", "how the mesh deforms: a PC2 file, or OBJ files numbered where the name has '#'",
+            false, applies},
+           frames.files, TextKind::path);
+    const bool moves =
+        applies && (f.reading() ? f.says("mesh_frames") : !f.writing() || !frames.files.empty());
+    f.number({"mesh_fps", "samples per second", false, moves}, frames.fps, {1e-3, 1e5});
+    f.number({"mesh_start", "s, when the first sample is due", false, moves}, frames.start,
+             {-3600, 3600, false, "s"});
+}
+
 void describe(Fields& f, Solid& solid) {
     f.place(solid.place);
     f.text({"name", "for messages and reports"}, solid.name, TextKind::name);
     f.choice({"shape", "unrotated, a plane faces up, a cylinder or capsule stands", true}, solid.shape,
              shapes);
     const Shape shape = solid.shape;
+    const bool mesh = shape == Shape::mesh;
+    describe(f, solid.mesh,
+             {"mesh", "OBJ file in the scene's folder: a closed body", false,
+              mesh || (!f.reading() && !f.writing())});
+    if (f.reading() && mesh && !f.says("mesh"))
+        f.problem("shape", "a mesh without a file", "write mesh = \"body.obj\"");
+    describe(f, solid.frames, mesh || (!f.reading() && !f.writing()));
     const bool curved = shape == Shape::sphere || shape == Shape::cylinder || shape == Shape::capsule;
     f.number({"radius", "of spheres, cylinders and capsules [m]", false, curved}, solid.radius,
              length_bounds);

@@ -46,6 +46,7 @@ public:
     virtual ~Fields() = default;
 
     virtual bool reading() const { return false; }
+    virtual bool writing() const { return false; }
     /// Reader: whether the table has this key. Elsewhere false.
     virtual bool says(std::string_view /*key*/) const { return false; }
     /// Reader: a problem with the key's value that only the table's own description can see.

@@ -8,6 +8,10 @@ namespace unravel {
 
 inline constexpr std::size_t max_scene_bytes = 4u << 20;  // of the file
 inline constexpr int max_particles = 4'000'000;           // in all cloths together, and in one direction
+inline constexpr std::size_t max_mesh_bytes = std::size_t{1} << 30;  // of one file of a mesh
+inline constexpr std::size_t max_sample_bytes = std::size_t{2}
+                                                << 30;  // of all samples of a mesh that deforms
+inline constexpr std::size_t max_faults = 8;            // of one mesh, shown
 inline constexpr int max_frames = 100'000;
 inline constexpr double max_steps = 1e8;
 inline constexpr double step_slack = 1e-6;         // relative, of a step that divides the frame

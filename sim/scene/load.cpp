@@ -50,7 +50,7 @@ void complete_names(std::vector<T>& things, Kind&& kind) {
 }
 
 std::string_view shape_name(const Solid& solid) {
-    constexpr std::string_view names[] = {"plane", "sphere", "box", "cylinder", "capsule"};
+    constexpr std::string_view names[] = {"plane", "sphere", "box", "cylinder", "capsule", "mesh"};
     return names[static_cast<std::size_t>(solid.shape)];
 }
 
@@ -92,6 +92,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
     describe(reader, scene);
     reader.finish();
 
+    load_meshes(scene, places, problems, folder);
     const Checking checking{scene, places, problems};
     check_clip(checking);
     check_cloths(checking);

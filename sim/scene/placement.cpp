@@ -1,7 +1,10 @@
 #include "sim/scene/placement.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "sim/mesh/mesh_cloth.hpp"
 
 namespace unravel {
 
@@ -22,6 +25,7 @@ namespace {
 
 /// Before the cloth is turned and moved.
 Vec3 unrotated(const Cloth& cloth, int i, int j) {
+    if (cloth.geometry) return cloth.geometry->rest[static_cast<std::size_t>(i)];
     const Vec2 uv = particle_uv(cloth, i, j);
     const double width = cloth.size[0] * cloth.placed_scale[0];
     const double length = cloth.size[1] * cloth.placed_scale[1];
@@ -78,6 +82,17 @@ bool pin_catches(const Cloth& cloth, const Pin& pin, int i, int j) {
             Vec2 off = uv - pin.disc.center;
             if (cloth.wrap == Wrap::tube) off.x() -= std::round(off.x());  // the shorter way round
             return std::hypot(off.x() * cloth.size[0], off.y() * cloth.size[1]) <= pin.disc.radius + slack;
+        }
+        case PinTarget::group: {
+            const auto found = cloth.geometry->groups.find(pin.group);
+            return found != cloth.geometry->groups.end() &&
+                   std::binary_search(found->second.begin(), found->second.end(),
+                                      static_cast<std::uint32_t>(i));
+        }
+        case PinTarget::within: {
+            const Vec3 x = placed_particle(cloth, i, j);
+            return (x.array() >= pin.within.low.array() - slack).all() &&
+                   (x.array() <= pin.within.high.array() + slack).all();
         }
     }
     return false;

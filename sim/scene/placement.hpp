@@ -23,8 +23,8 @@ Vec3 placed_particle(const Cloth& cloth, int i, int j);
 /// The same for all of them, at j · nu + i.
 std::vector<Vec3> placed_particles(const Cloth& cloth);
 
-/// Whether a pin catches the particle at (i, j). One on the border of a box or disc, to within 1e-9, is
-/// caught.
+/// Whether a pin catches the particle at (i, j); a mesh's vertex i is at (i, 0). One on the border of a box
+/// or disc, to within 1e-9, is caught.
 bool pin_catches(const Cloth& cloth, const Pin& pin, int i, int j);
 
 /// Indices j · nu + i of the particles that a pin catches, ascending.

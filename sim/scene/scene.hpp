@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,9 @@ namespace unravel {
 
 using Vec3 = Eigen::Vector3d;
 using Vec2 = Eigen::Vector2d;
+
+struct MeshCloth;  // sim/mesh/mesh_cloth.hpp
+struct MeshSolid;  // sim/mesh/mesh_solid.hpp
 
 /// A place in the scene file (1-based), or in the n-th --set option when `option` is positive.
 struct SourcePlace {
@@ -57,6 +61,7 @@ struct UvDisc {
 /// A part of a cloth made of something else (interfacing, a hem, a lead weight).
 struct Region {
     UvBox box;
+    std::string group;                 ///< of a mesh, instead of the box
     std::optional<Material> material;  ///< absent: the cloth's own
     std::optional<double> density;     ///< kg/m²; absent: the cloth's own
     SourcePlace place;
@@ -72,7 +77,12 @@ struct Keyframe {
 /// the last keyframe). Empty: does not move.
 using Motion = std::vector<Keyframe>;
 
-enum class PinTarget { corner, edge, particles, box, disc };
+enum class PinTarget { corner, edge, particles, box, disc, group, within };
+
+/// A box in the world, at the start.
+struct WorldBox {
+    Vec3 low{0, 0, 0}, high{0, 0, 0};  ///< m
+};
 
 /// Particles whose motion is prescribed: fully constrained from the start until `release`.
 struct Pin {
@@ -81,17 +91,40 @@ struct Pin {
     std::array<int, 4> range{0, 0, 0, 0};  ///< particles: first and last grid index along u, then along v
     UvBox box;
     UvDisc disc;
-    Motion motion;  ///< displacement from, and rotation about the centre of, the pinned particles
+    std::string group;  ///< of a mesh's vertices
+    WorldBox within;    ///< a mesh's vertices in it
+    Motion motion;      ///< displacement from, and rotation about the centre of, the pinned particles
     std::optional<double> release;  ///< s; absent: never
     SourcePlace place;
 };
 
 enum class Wrap { open, tube };
 
+/// Which way is up in a mesh's file.
+enum class UpAxis { y, z };
+
+/// A mesh as a scene names it: an OBJ file in the scene's folder.
+struct MeshFile {
+    std::string file;  ///< empty: none
+    double scale = 1;  ///< metres per unit of the file
+    UpAxis up = UpAxis::y;
+    std::string hash;  ///< of the file's content, in a run's own scene: the run is tied to it
+};
+
+/// How a mesh's seams close.
+struct Sewing {
+    double time = 1.0;     ///< s; distances shrink evenly to nothing over it
+    double stiffness = 0;  ///< N/m of each stitch; 0: ten times the cloth's stiffest edge
+};
+
 /// A sheet of particles.u × particles.v. Unrotated it lies in the x–z plane, u along +x, v along +z, its
-/// front (+y) up. A tube is closed in u: its axis is z, its circumference size[0], its front outside.
+/// front (+y) up. A tube is closed in u: its axis is z, its circumference size[0], its front outside. A mesh
+/// takes the place of both: `particles` is then {vertices, 1}, and it stands where its file has it.
 struct Cloth {
     std::string name;
+    MeshFile mesh;
+    std::shared_ptr<const MeshCloth> geometry;  ///< of the mesh, read by the loader; null: a grid
+    Sewing sewing;
     std::array<int, 2> particles{51, 51};
     std::array<double, 2> size{1.0, 1.0};  ///< m, flat and at rest
     double density = 0.2;                  ///< kg/m²
@@ -108,7 +141,14 @@ struct Cloth {
     SourcePlace place;
 };
 
-enum class Shape { plane, sphere, box, cylinder, capsule };
+enum class Shape { plane, sphere, box, cylinder, capsule, mesh };
+
+/// Samples of a mesh that deforms: a PC2 file, or OBJ files numbered where the name has '#'.
+struct MeshFrames {
+    std::string files;  ///< empty: it keeps its shape
+    double fps = 30;    ///< samples per second
+    double start = 0;   ///< s, when the first is due; before it the first holds, after the last the last
+};
 
 struct Friction {
     double static_ = 0.5;  ///< coefficient while held
@@ -119,7 +159,10 @@ struct Friction {
 struct Solid {
     std::string name;
     Shape shape = Shape::sphere;
-    double radius = 0.3;  ///< sphere, cylinder, capsule [m]
+    MeshFile mesh;
+    MeshFrames frames;
+    std::shared_ptr<const MeshSolid> geometry;  ///< of the mesh, read by the loader
+    double radius = 0.3;                        ///< sphere, cylinder, capsule [m]
     double height = 1.0;  ///< cylinder: whole height; capsule: between the centres of its caps [m]
     Vec3 size{1, 1, 1};   ///< box: full edge lengths [m]
     double round = 0.0;   ///< box, cylinder: radius of the rounded edges [m]

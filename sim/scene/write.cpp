@@ -22,6 +22,8 @@ class Writer : public Fields {
 public:
     explicit Writer(std::string path) : path_(std::move(path)) {}
 
+    bool writing() const override { return true; }
+
     std::string lines() const { return fmt::format("{}{}{}", join("\n"), own_.empty() ? "" : "\n", nested_); }
     std::string inline_table() const { return fmt::format("{{{}}}", join(", ")); }
 

@@ -28,6 +28,7 @@ Json place_json(const ClothModel& model, std::uint32_t particle) {
     for (const ClothPatch& patch : model.cloths) {
         if (particle < patch.first || particle >= patch.first + patch.count()) continue;
         const std::uint32_t local = particle - patch.first;
+        if (!patch.grid()) return {{"cloth", patch.name}, {"vertex", local + 1}};
         const auto along_u = static_cast<std::uint32_t>(patch.particles[0]);
         return {{"cloth", patch.name}, {"i", local % along_u}, {"j", local / along_u}};
     }
