@@ -2,6 +2,7 @@
 // deform.
 
 #include <catch2/catch.hpp>
+#include <cstring>
 #include <random>
 
 #include "base/whole_file.hpp"

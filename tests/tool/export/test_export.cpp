@@ -141,8 +141,8 @@ TEST_CASE("PC2 and MDD hold every frame, rounded to floats once", "[export]") {
         REQUIRE(samples.size() == 3);
         for (int k = 0; k < 3; ++k) {
             for (std::size_t p = 0; p < 36; ++p)
-                REQUIRE(samples[static_cast<std::size_t>(k)][p].cast<float>() ==
-                        run.at(k + 1, 35 + p).cast<float>());
+                REQUIRE(Eigen::Vector3f(samples[static_cast<std::size_t>(k)][p].cast<float>()) ==
+                        Eigen::Vector3f(run.at(k + 1, 35 + p).cast<float>()));
         }
     }
 }
