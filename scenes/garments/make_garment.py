@@ -2,7 +2,8 @@
 """Makes the meshes of the scenes in this folder: python3 scenes/garments/make_garment.py [--spacing METRES] [-o DIR]
 
   tshirt.obj   a front and a back panel of quads, flat, before and behind the body; l lines are the seams that sew
-               sleeves, sides and shoulders; groups "front", "back", "neck", "hem", "cuffs"
+               sleeves, sides and shoulders; groups "front", "back", "front_top" and "back_top" (where shoulders are sewn),
+                 "neck", "hem", "cuffs"
   skirt.obj    a closed ring of quads with a flare; groups "waist", "hem"
   body.obj     a closed triangle mesh: torso, neck and arms grown together
   arm.obj, arm.pc2   a forearm that bends at the elbow: a mesh that deforms, 31 samples
@@ -17,17 +18,12 @@ import struct
 SLEEVE_DROP = 0.42  # metres down per metre out, of shoulder and sleeve
 
 
-def outline(x, y, width=0.52, length=0.66, reach=0.44, sleeve=0.21, neck=0.115):
-    """Whether the T-shirt's panel has cloth at (x, y): x from the middle, y down from the shoulder line."""
-    return abs(x) <= width / 2 and y <= length or abs(x) <= reach and y <= sleeve
-
-
 def tshirt(spacing):
     width, length, reach, sleeve, neck = 0.52, 0.66, 0.44, 0.21, 0.115
     half, columns, rows = round(width / 2 / spacing), round(reach / spacing), round(length / spacing)
     deep = round(sleeve / spacing)
     vertices, uvs, faces, lines = [], [], [], []
-    groups = {"front": [], "back": [], "neck": [], "hem": [], "cuffs": []}
+    groups = {"front": [], "back": [], "front_top": [], "back_top": [], "neck": [], "hem": [], "cuffs": []}
     number = {}
     for panel, z in (("front", 0.19), ("back", -0.19)):
         for j in range(rows + 1):
@@ -55,6 +51,7 @@ def tshirt(spacing):
     for i, j in sewn:
         lines.append((number["front", i, j], number["back", i, j]))
     for panel in ("front", "back"):
+        groups[panel + "_top"] += [number[panel, i, 0] for i in range(-columns, columns + 1) if abs(i) >= top]
         groups["neck"] += [number[panel, i, 0] for i in range(1 - top, top)]
         groups["hem"] += [number[panel, i, rows] for i in range(-half, half + 1)]
         groups["cuffs"] += [number[panel, s * columns, j] for s in (-1, 1) for j in range(deep + 1)]
@@ -63,7 +60,7 @@ def tshirt(spacing):
 
 def skirt(spacing):
     """A ring from the waist down, its columns spread evenly; circumference grows with the way down."""
-    waist, flare, length, top = 0.76, 1.35, 0.5, 1.0
+    waist, flare, length, top = 0.96, 1.25, 0.5, 1.0
     columns, rows = round(waist * 1.2 / spacing), round(length / spacing)
     vertices, uvs, faces = [], [], []
     for j in range(rows + 1):
