@@ -39,6 +39,7 @@ StepReport adaptive_step(Simulation& simulation, const AdaptiveStep& settings, i
         const double h = static_cast<double>(length) / parts / rate;
         const bool smallest = state.halvings >= deepest;
         const std::uint8_t halvings = state.halvings;
+        const double energy = simulation.guard.total;
         double over = 0;
         StepReport report;
         try {
@@ -52,6 +53,7 @@ StepReport adaptive_step(Simulation& simulation, const AdaptiveStep& settings, i
         }
         if (over > 1 && !smallest) {
             state = simulation.guard.before;
+            simulation.guard.total = energy;
             state.halvings = static_cast<std::uint8_t>(halvings + 1);
             continue;
         }

@@ -15,6 +15,7 @@
 #include "sim/scene/load.hpp"
 #include "tool/interrupt.hpp"
 #include "tool/options.hpp"
+#include "tool/render_options.hpp"
 #include "tool/studies/accuracy_contrast.hpp"
 #include "tool/studies/accuracy_points.hpp"
 #include "tool/studies/accuracy_study.hpp"

@@ -6,6 +6,11 @@ import struct
 import sys
 
 import bpy
+import numpy
+
+# Debian 12's Blender reads glTF with a name that its NumPy no longer has.
+if not hasattr(numpy, "bool"):
+    numpy.bool = bool
 
 run = sys.argv[sys.argv.index("--") + 1]
 tolerance = 2e-6  # metres: floats, and one sum of them in glTF

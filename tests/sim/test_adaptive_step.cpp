@@ -63,7 +63,7 @@ TEST_CASE("a rejected step leaves no trace: the run equals one made of its accep
     std::uint32_t rejected = 0;
     for (const StepReport& r : reports) {
         rejected += r.rejected;
-        step(replay.model, replay.options, r.h, replay.state, replay.ws);
+        guarded_step(replay.model, replay.options, r.h, replay.state, replay.ws, replay.guard);
         // Time is counted in halvings by the run, so that frames are met exactly.
         replay.state.t = r.t;
     }

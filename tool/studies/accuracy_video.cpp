@@ -63,9 +63,11 @@ Rgb heat_color(double distance, double worst) {
     return {between(a.r, b.r), between(a.g, b.g), between(a.b, b.b)};
 }
 
-void write_accuracy_video(const Scene& scene, const AccuracySide& cheap, const AccuracySide& accurate,
+void write_accuracy_video(const Scene& studied, const AccuracySide& cheap, const AccuracySide& accurate,
                           const DeviceChoice& device, const std::filesystem::path& file,
                           const std::function<bool()>& keep_on) {
+    Scene scene = studied;
+    scene.look.show = Show::components;  // whose colours are those that are given
     Placement placement;
     const ClothModel model = build_model(scene, placement);
     const DrawScene drawn = make_draw_scene(scene, model, placement);
@@ -79,6 +81,7 @@ void write_accuracy_video(const Scene& scene, const AccuracySide& cheap, const A
 
     const double worst = worst_distance(cheap.trajectory, accurate.trajectory);
     FrameRecord record;
+    record.springs.assign(model.springs.size(), SpringState::implicit);  // no wire is faint
     DrawFrame frame;
     std::vector<Rgb> colors(model.size(), exact_color);
     std::array<Image, 2> pictures;

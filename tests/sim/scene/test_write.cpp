@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "sim/mesh/mesh_cloth.hpp"
+#include "sim/mesh/mesh_solid.hpp"
 #include "sim/scene/document.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/scene/schema.hpp"
@@ -130,6 +132,7 @@ TEST_CASE("the complete scene's values arrive where they belong", "[scene]") {
     CHECK(scene.solver.step == 1.0 / 240);
     CHECK(scene.solver.max_iterations == 321);
     CHECK(!scene.solver.decompose);
+    CHECK(scene.solver.bend == BendTreatment::explicit_);
     CHECK(scene.solver.adaptive->max_strain == 0.07);
     CHECK(scene.wind->keyframes[1].velocity == Vec3(3, 0, 0));
     CHECK(scene.wind->gust->seed == 9);

@@ -7,6 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/whole_file.hpp"
+#include "sim/mesh/check_mesh.hpp"
+#include "sim/mesh/mesh_cloth.hpp"
+#include "sim/mesh/obj.hpp"
 #include "sim/mesh/pc2.hpp"
 #include "sim/simulate.hpp"
 #include "tests/sim/mesh/mesh_scene.hpp"
