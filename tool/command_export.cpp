@@ -51,7 +51,9 @@ int command_export(const Options& options) {
     source.read = [&](int frame) {
         return read_record(run.record(frame), hash, model.size(), model.springs.size());
     };
-    Progress progress(scene.name, source.frames(), options.quiet || options.json);
+    const std::string own_name = std::filesystem::weakly_canonical(run.root).filename().string();
+    const std::string name = own_name.empty() ? "unravel" : own_name;
+    Progress progress(name, source.frames(), options.quiet || options.json);
     source.done = [&](int frame) {
         progress.show(frame - source.first + 1, 0);
         return !InterruptWatch::requested();
@@ -61,8 +63,7 @@ int command_export(const Options& options) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) throw OutputError(folder, error.value());
-    const std::string name = std::filesystem::weakly_canonical(run.root).filename().string();
-    const Written written = export_as(options.format, source, folder, name.empty() ? "unravel" : name);
+    const Written written = export_as(options.format, source, folder, name);
     progress.finish();
     if (options.json) {
         nlohmann::ordered_json json{{"format", options.format},     {"units", "metres"},

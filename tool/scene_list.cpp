@@ -26,8 +26,9 @@ constexpr std::size_t largest_json = std::size_t{64} << 20;
 
 struct ListedScene {
     fs::path file;
-    Scene scene;
+    Scene scene;  // with what the command line changes of its look and size
     RunFolder folder;
+    int last;  // frame that is asked for
 };
 
 Options options_for(const Options& options, const ListedScene& listed) {
@@ -45,6 +46,7 @@ std::vector<ListedScene> list_scenes(const Options& options) {
     for (const fs::path& file : options.scenes) {
         try {
             Scene scene = load_scene(file, options.overrides);
+            const int last = clip_options_of(options, scene).last;
             const fs::path around = options.output.empty() ? fs::path("output") : options.output;
             RunFolder folder{options.scenes.size() == 1 && !options.output.empty() ? around
                                                                                    : around / scene.name};
@@ -52,7 +54,7 @@ std::vector<ListedScene> list_scenes(const Options& options) {
                 throw UsageError(fmt::format("two of the scenes are called {}, and would share '{}'",
                                              scene.name, folder.root.string()));
             }
-            list.push_back({file, std::move(scene), std::move(folder)});
+            list.push_back({file, std::move(scene), std::move(folder), last});
         } catch (const SceneError& error) {
             said += (said.empty() ? "" : "\n") + std::string(error.what());
             problems.insert(problems.end(), error.problems().begin(), error.problems().end());
@@ -74,7 +76,7 @@ bool is_complete(const ListedScene& listed, const std::vector<std::string>& comm
     for (const std::string& video : run.value("videos", std::vector<std::string>())) {
         if (!fs::exists(folder.root / video)) return false;
     }
-    for (int frame = 0; frame < listed.scene.clip.frames(); ++frame) {
+    for (int frame = 0; frame <= listed.last; ++frame) {
         if (!fs::exists(folder.record(frame))) return false;
     }
     return true;
@@ -83,7 +85,7 @@ bool is_complete(const ListedScene& listed, const std::vector<std::string>& comm
 int frames_there(const std::vector<ListedScene>& list) {
     int frames = 0;
     for (const ListedScene& listed : list) {
-        for (int k = 0; k < listed.scene.clip.frames() && fs::exists(listed.folder.record(k)); ++k) ++frames;
+        for (int k = 0; k <= listed.last && fs::exists(listed.folder.record(k)); ++k) ++frames;
     }
     return frames;
 }
@@ -102,7 +104,7 @@ int send(const Options& options, const std::vector<ListedScene>& list) {
     work.results = results_of(options, list);
     for (std::size_t k = 0; k < list.size(); ++k) {
         if (options.force || !is_complete(list[k], command)) work.missing.push_back(static_cast<int>(k));
-        work.total += list[k].scene.clip.frames();
+        work.total += list[k].last + 1;
     }
     // What a folder holds is judged here, once: a task that is done again goes on from what it has left
     // itself.

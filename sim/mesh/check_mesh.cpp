@@ -3,7 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
+#include <tuple>
 
 namespace unravel {
 
@@ -72,26 +75,33 @@ public:
         }
     }
 
-    // Vertices at one and the same place look sewn and are not. Seams (l lines) may join such.
+    // Vertices at one and the same place, or nearer than numbers of six digits tell, look sewn and are not.
+    // Seams (l lines) may join such. Sorted along a direction that no mesh has, those that are near stand
+    // near.
     void duplicates() {
+        const Vec3 along(0.5377, 0.3519, 0.7663);
+        const double near = 1e-5 * shortest_side();
         std::vector<std::uint32_t> order(mesh_.positions.size());
         std::iota(order.begin(), order.end(), 0u);
-        const auto key = [&](std::uint32_t v) {
-            const Vec3& x = mesh_.positions[v];
-            return std::tuple(x.x(), x.y(), x.z(), v);
-        };
-        std::sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
+        std::vector<double> place;
+        place.reserve(order.size());
+        for (const Vec3& x : mesh_.positions) place.push_back(along.dot(x));
+        std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return std::tie(place[a], a) < std::tie(place[b], b);
+        });
         std::vector<std::pair<std::uint32_t, std::uint32_t>> sewn;
         for (const auto& [a, b] : mesh_.lines) sewn.emplace_back(std::min(a, b), std::max(a, b));
         std::sort(sewn.begin(), sewn.end());
         for (std::size_t k = 1; k < order.size() && !full(); ++k) {
-            const std::uint32_t a = order[k - 1], b = order[k];
-            if (mesh_.positions[a] != mesh_.positions[b] ||
-                std::binary_search(sewn.begin(), sewn.end(), std::pair(a, b)))
-                continue;
-            add(mesh_.vertex_line[b],
-                fmt::format("vertex {} lies on vertex {} (line {})", b + 1, a + 1, mesh_.vertex_line[a]),
-                "merge them, or join them by a seam (l line)");
+            for (std::size_t l = k; l-- > 0 && place[order[k]] - place[order[l]] <= near && !full();) {
+                const auto [a, b] = std::minmax(order[l], order[k]);
+                if ((mesh_.positions[a] - mesh_.positions[b]).norm() > near ||
+                    std::binary_search(sewn.begin(), sewn.end(), std::pair(a, b)))
+                    continue;
+                add(mesh_.vertex_line[b],
+                    fmt::format("vertex {} lies on vertex {} (line {})", b + 1, a + 1, mesh_.vertex_line[a]),
+                    "merge them, or join them by a seam (l line)");
+            }
         }
     }
 
@@ -120,6 +130,24 @@ public:
     bool full() const { return faults_.size() >= most_; }
 
 private:
+    // Of all sides of faces, but for those that have no length to speak of.
+    double shortest_side() const {
+        double longest = 0, shortest = std::numeric_limits<double>::infinity();
+        const auto each_side = [&](const auto& visit) {
+            for (const ObjMesh::Face& face : mesh_.faces) {
+                for (std::size_t k = 0; k < face.corners; ++k)
+                    visit((mesh_.positions[face.vertex[k]] -
+                           mesh_.positions[face.vertex[(k + 1) % face.corners]])
+                              .norm());
+            }
+        };
+        each_side([&](double length) { longest = std::max(longest, length); });
+        each_side([&](double length) {
+            if (length > 1e-6 * longest) shortest = std::min(shortest, length);
+        });
+        return shortest;
+    }
+
     void add(int line, std::string what, std::string hint) {
         if (!full()) faults_.push_back({line, std::move(what), std::move(hint)});
     }

@@ -23,7 +23,7 @@ struct ClusterWork {
     bool threads = true;            ///< the command takes --threads
     bool alone = false;             ///< pieces are timed
     std::function<void()> prepare;  ///< done here before anything is sent; empty: nothing
-    std::string unit;               ///< what is counted while waiting: "frame"
+    std::string unit = "frame";     ///< what is counted while waiting
     int total = 0;                  ///< of them
     std::function<int()> done;      ///< how many lie there
 };

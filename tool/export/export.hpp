@@ -50,11 +50,15 @@ std::span<const Vec3> positions_of(const ClothPatch& patch, const FrameRecord& r
 /// Unit normals of a surface, weighted by area; (0, 1, 0) where there is none. (vertices)
 std::vector<Vec3> surface_normals(const ClothSurface& surface, std::span<const Vec3> x);
 
-/// A cloth's name as that of a file: letters, digits, '-', '_' and '.'; others become '_'.
+/// A name as that of a file: letters, digits, '-', '_' and '.'; others become '_'.
 std::string file_name(const std::string& name);
 
-/// One cloth as the lines of an OBJ file, after `vertices` and `uvs` that stand in the file already.
-std::string obj_text(const ClothPatch& patch, const ClothSurface& surface, std::span<const Vec3> x,
-                     std::size_t vertices, std::size_t uvs);
+/// The cloths' names as those of files, no two the same: what is taken gets "_2", "_3", … (cloths)
+std::vector<std::string> file_names(const ClothModel& model);
+
+/// One cloth as the lines of an OBJ file, its object called `name`, after `vertices` and `uvs` that stand in
+/// the file already.
+std::string obj_text(const std::string& name, const ClothPatch& patch, const ClothSurface& surface,
+                     std::span<const Vec3> x, std::size_t vertices, std::size_t uvs);
 
 }  // namespace unravel

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <iterator>
 
@@ -40,11 +41,23 @@ std::string file_name(const std::string& name) {
     return out.starts_with('.') ? "_" + out : out;
 }
 
-std::string obj_text(const ClothPatch& patch, const ClothSurface& surface, std::span<const Vec3> x,
-                     std::size_t vertices, std::size_t uvs) {
+std::vector<std::string> file_names(const ClothModel& model) {
+    std::vector<std::string> names;
+    for (const ClothPatch& patch : model.cloths) {
+        const std::string plain = file_name(patch.name);
+        std::string name = plain;
+        for (int k = 2; std::find(names.begin(), names.end(), name) != names.end(); ++k)
+            name = fmt::format("{}_{}", plain, k);
+        names.push_back(name);
+    }
+    return names;
+}
+
+std::string obj_text(const std::string& name, const ClothPatch& patch, const ClothSurface& surface,
+                     std::span<const Vec3> x, std::size_t vertices, std::size_t uvs) {
     fmt::memory_buffer out;
     const auto to = std::back_inserter(out);
-    fmt::format_to(to, "o {}\n", file_name(patch.name));
+    fmt::format_to(to, "o {}\n", name);
     // fmt's {} is the shortest text that reads back to the same double.
     for (const Vec3& p : x) fmt::format_to(to, "v {} {} {}\n", p.x(), p.y(), p.z());
     for (const Vec2& uv : surface.uvs) fmt::format_to(to, "vt {} {}\n", uv.x(), uv.y());
@@ -70,6 +83,7 @@ std::string obj_text(const ClothPatch& patch, const ClothSurface& surface, std::
 
 Written export_obj(const ExportSource& source, const std::filesystem::path& folder) {
     Written written;
+    const std::vector<std::string> names = file_names(source.model);
     for (int frame = source.first; frame <= source.last; ++frame) {
         const FrameRecord record = source.read(frame);
         WholeFile file(folder / fmt::format("frame_{:04}.obj", frame));
@@ -77,7 +91,8 @@ Written export_obj(const ExportSource& source, const std::filesystem::path& fold
         std::size_t uvs = 0;
         for (std::size_t c = 0; c < source.surfaces.size(); ++c) {
             const ClothPatch& patch = source.model.cloths[c];
-            file.write(obj_text(patch, source.surfaces[c], positions_of(patch, record), patch.first, uvs));
+            file.write(
+                obj_text(names[c], patch, source.surfaces[c], positions_of(patch, record), patch.first, uvs));
             uvs += source.surfaces[c].uvs.size();
         }
         file.commit();

@@ -33,10 +33,11 @@ std::vector<std::uint8_t> mdd_header(const ExportSource& source, std::uint32_t p
 }  // namespace
 
 Written export_point_cache(const ExportSource& source, const std::filesystem::path& folder, bool mdd) {
+    const std::vector<std::string> names = file_names(source.model);
     std::vector<std::unique_ptr<WholeFile>> meshes, caches;
     for (std::size_t c = 0; c < source.surfaces.size(); ++c) {
         const ClothPatch& patch = source.model.cloths[c];
-        const std::string name = file_name(patch.name);
+        const std::string& name = names[c];
         meshes.push_back(std::make_unique<WholeFile>(folder / (name + ".obj")));
         caches.push_back(std::make_unique<WholeFile>(folder / (name + (mdd ? ".mdd" : ".pc2"))));
         const Pc2Header header{static_cast<std::int32_t>(patch.count()), static_cast<float>(source.first),
@@ -51,7 +52,7 @@ Written export_point_cache(const ExportSource& source, const std::filesystem::pa
             const std::span<const Vec3> x = positions_of(patch, record);
             if (frame == source.first) {
                 meshes[c]->write(std::string_view("# unravel: metres, right-handed, y up\n"));
-                meshes[c]->write(obj_text(patch, source.surfaces[c], x, 0, 0));
+                meshes[c]->write(obj_text(names[c], patch, source.surfaces[c], x, 0, 0));
             }
             bytes.clear();
             for (const Vec3& p : x) {

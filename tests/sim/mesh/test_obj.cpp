@@ -67,6 +67,7 @@ TEST_CASE("a broken mesh of each kind gets its message", "[mesh]") {
         {square + "cstype bezier\n", 5, "'cstype' begins no line of a polygon mesh"},
         {square + "v 3 0 0\nf 1 2 3 4\n", 5, "vertex 5 belongs to no face"},
         {square + "v 1 1 0\nf 1 2 4\nf 2 3 4\nf 5 4 2\n", 5, "vertex 5 lies on vertex 3 (line 3)"},
+        {square + "v 1.000001 1 0\nf 1 2 4\nf 2 3 4\nf 5 4 2\n", 5, "vertex 5 lies on vertex 3 (line 3)"},
         {square + "f 1 2 2\n", 5, "face 1 names a vertex twice (1, 2, 2)"},
         {square + "v 2 0 0\nf 1 2 3 4\nf 1 2 5\n", 7, "face 2 has no area (vertices 1, 2, 5)"},
         {square + "f 1 2 3\nf 1 3 4\nf 4 1 3\n", 7,

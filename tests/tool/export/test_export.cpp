@@ -106,7 +106,7 @@ TEST_CASE("a grid that is exported and taken up as a mesh starts from the same b
     Simulation simulation = start_simulation(grid);
     const ClothPatch& patch = simulation.model.cloths[0];
     const testing::MeshScene made("[cloth]\nmesh = \"mesh.obj\"\n",
-                                  obj_text(patch, surface_of(patch), simulation.state.x, 0, 0));
+                                  obj_text("sheet", patch, surface_of(patch), simulation.state.x, 0, 0));
     Placement placement;
     const ClothModel model = build_model(made.scene, placement);
     REQUIRE(placement.x == simulation.state.x);
@@ -210,6 +210,26 @@ TEST_CASE("glTF's targets put the vertices where the frames have them", "[export
     const auto& input = json["accessors"][sampler["input"].get<int>()];
     CHECK(input["max"][0].get<float>() == 0.1f);
     CHECK(json["accessors"][sampler["output"].get<int>()]["count"] == 6);
+}
+
+TEST_CASE("cloths whose names are alike get files of their own", "[export]") {
+    const Scene scene = parse_scene(
+        "[[cloth]]\nname = \"a b\"\nparticles = [3, 3]\n[[cloth]]\nname = \"a_b\"\nparticles = [4, 3]\n"
+        "center = [0, 1, 0]\n",
+        "alike.toml");
+    Simulation simulation = start_simulation(scene);
+    const FrameRecord record = present_record(simulation);
+    ExportSource source{simulation.model, {}, 0, 0, 25, {}, {}};
+    for (const ClothPatch& patch : simulation.model.cloths) source.surfaces.push_back(surface_of(patch));
+    source.read = [&](int) { return record; };
+    source.done = [](int) { return true; };
+    const TemporaryFolder folder;
+    const Written written = export_point_cache(source, folder.path(), false);
+    REQUIRE(written.size() == 4);
+    CHECK(written[1].filename() == "a_b.pc2");
+    CHECK(written[3].filename() == "a_b_2.pc2");
+    CHECK(folder.entries() == 4);
+    CHECK(read_whole_file(written[3], largest).size() == 32 + 12 * 12);
 }
 
 TEST_CASE("an export that is stopped leaves no half of a file", "[export]") {
