@@ -108,7 +108,10 @@ int wait_and_tell(const Options& options, const ClusterWork& work, const std::ve
     const InterruptWatch watch;
     const fs::path results = fs::absolute(work.results).lexically_normal();
     if (!wait_for_end(options, work, job_comment(results))) {
-        fmt::print(stderr, "the jobs go on; `scancel {}` ends them\n", fmt::join(jobs, " "));
+        fmt::print(stderr,
+                   "the jobs go on; `scancel {}` ends those that wait and sends those that run back "
+                   "to wait\n",
+                   fmt::join(jobs, " "));
         return exit_interrupted;
     }
     const fs::path log = job_log(results, work.name + "_collect");

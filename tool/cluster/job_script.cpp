@@ -16,10 +16,11 @@ constexpr std::string_view harmless =
 
 // How a task ends. The tool runs beside the shell, which outlives it where the tool alone is killed.
 constexpr std::string_view how_it_ends = R"(
-# A task that is killed, or whose time is up (Slurm says so a minute ahead), goes back into the queue and goes on
-# from where it stopped. One that fails for a reason of its own has failed.
+# A task that is killed, by scancel too, or whose time is up (Slurm says so a minute ahead), goes back into the queue
+# and goes on from where it stopped; scancel while it waits there ends it. One that fails for a reason of its own has
+# failed.
 work=$!
-trap 'kill -TERM "$work"' USR1
+trap 'kill -TERM "$work"' USR1 TERM
 wait "$work"; status=$?
 while kill -0 "$work" 2>/dev/null; do wait "$work"; status=$?; done
 if ((status > 128 && ${SLURM_RESTART_COUNT:-0} < 10)); then scontrol requeue "$SLURM_JOB_ID"; fi
