@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "tool/bench/frames.hpp"
+#include "tool/cluster/cluster.hpp"
 #include "tool/guarded.hpp"
 #include "tool/options.hpp"
 #include "tool/version.hpp"
@@ -71,7 +72,7 @@ void add_output_options(CLI::App& command, Options& o) {
     command.add_flag("--json", o.json, "print the result as JSON");
 }
 
-void add_cluster_options(CLI::App& command, Options& o) {
+CLI::Option* add_submission_options(CLI::App& command, Options& o) {
     ClusterOptions& c = o.cluster;
     const auto add = [&](CLI::Option* option) { return option->group("On a cluster"); };
     CLI::Option* slurm = add(
@@ -88,11 +89,21 @@ void add_cluster_options(CLI::App& command, Options& o) {
     with(
         command.add_option("--sbatch", c.sbatch, "any other option of sbatch: --sbatch=--mem=8G; repeatable")
             ->allow_extra_args(false));
+    return slurm;
+}
+
+// Commands whose work falls into pieces.
+void add_cluster_options(CLI::App& command, Options& o) {
+    CLI::Option* slurm = add_submission_options(command, o);
     CLI::Option* point =
-        add(command.add_option("--point", o.point, "what a task does: this piece only, from 0 on")
-                ->check(CLI::Range(0, 1000000)));
-    CLI::Option* collect = add(command.add_flag(
-        "--collect", o.collect, "conclude from the pieces that lie there, name those that are missing"));
+        command.add_option("--point", o.point, "what a task does: this piece only, from 0 on")
+            ->check(CLI::Range(0, 1000000))
+            ->group("On a cluster");
+    CLI::Option* collect =
+        command
+            .add_flag("--collect", o.collect,
+                      "conclude from the pieces that lie there, name those that are missing")
+            ->group("On a cluster");
     slurm->excludes(point)->excludes(collect);
     point->excludes(collect);
 }
@@ -176,8 +187,9 @@ int main(int argc, char** argv) {
     accuracy->add_option("--error", options.error, "to be borne, as a share of the cloth's diagonal")
         ->check(CLI::Range(1e-9, 1.0))
         ->capture_default_str();
-    accuracy->add_option("--stiffer", options.stiffer,
-                         "the same study of a cloth so many times stiffer, and both side by side")
+    accuracy
+        ->add_option("--stiffer", options.stiffer,
+                     "the same study of a cloth so many times stiffer, and both side by side")
         ->check(CLI::Range(1.0, 1e6));
     accuracy->add_option("--video", options.video, "mp4 of a cheap run beside an accurate one, or none")
         ->check(CLI::IsMember({"mp4", "none"}))
@@ -213,7 +225,8 @@ int main(int argc, char** argv) {
         ->capture_default_str();
     bool frames_bench = true;  // the only one so far
     CLI::App* bench =
-        command("bench", "what pictures cost, each stage alone and all together", command_bench_frames);
+        command("bench", "what pictures cost, each stage alone and all together",
+                [](const Options& o) { return o.cluster.submit ? send_bench(o) : command_bench_frames(o); });
     bench->add_flag("--frames", frames_bench, "simulation, drawing, PNG and mp4 of both views");
     bench->add_option("scene", options.scene, "scene file (default: drape_sphere)");
     bench->add_option("--set", options.overrides, "key=value: another value for a key of the scene")
@@ -222,6 +235,7 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1, 1024));
     bench->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
         ->capture_default_str();
+    add_submission_options(*bench, options);
     CLI::App* schema = command("schema", "what files hold, for editors and programs", command_schema);
     schema
         ->add_option(

@@ -233,6 +233,15 @@ def test_points_of_an_accuracy_study_are_as_on_one_machine(cluster, folder):
         assert {row["processor"] for row in csv.DictReader(file)} == {processor, "Another Processor"}
 
 
+def test_a_bench_has_one_node_for_itself(cluster, folder):
+    (scene,) = make_scenes(folder, 1, 11)
+    work = ["bench", "--frames", scene, *SOFTWARE, "--slurm"]
+    script = cluster.tool([*work, "--dry-run"], place=folder)
+    assert script.count("# ---- ") == 1 and "#SBATCH --exclusive\n" in script and "--array" not in script, script
+    text = cluster.tool([*work, "--wait"], place=folder)
+    assert len(jobs_in(text)) == 1 and "ms" in text.split("slurm\n", 1)[1], text
+
+
 def test_dry_runs_print_scripts_that_a_shell_reads(cluster, folder):
     (scene,) = make_scenes(folder, 1, 11)
     scene = scene.rename(folder / "it's a scene.toml")

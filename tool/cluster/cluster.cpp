@@ -36,6 +36,7 @@ std::vector<JobScript> scripts_of(const Options& options, const ClusterWork& wor
     words.insert(words.end(), work.more.begin(), work.more.end());
     std::string command = shell_quoted(words);
     if (work.threads && options.threads == 0) command += " --threads \"${SLURM_CPUS_PER_TASK:-1}\"";
+    if (work.undivided) return {{work.name, work.what, command, {}, work.alone}};
     std::vector<JobScript> scripts;
     if (!work.before.empty() && !work.missing.empty()) {
         scripts.push_back(
@@ -114,7 +115,7 @@ int wait_and_tell(const Options& options, const ClusterWork& work, const std::ve
                    fmt::join(jobs, " "));
         return exit_interrupted;
     }
-    const fs::path log = job_log(results, work.name + "_collect");
+    const fs::path log = job_log(results, work.undivided ? work.name : work.name + "_collect");
     if (fs::exists(log)) fmt::print("{}", read_whole_text(log, largest_log));
     const std::optional<int> code = slurm_exit_code(jobs.back());
     if (!code) throw InputError(log, "the cluster has forgotten how its job ended");
@@ -218,11 +219,24 @@ int do_on_cluster(const Options& options, const ClusterWork& work) {
         // Logs grow while a task is queued again; those of an earlier sending are no news.
         fs::remove(job_log(results, scripts[k].name), error);
         for (const int task : scripts[k].tasks) fs::remove(job_log(results, scripts[k].name, task), error);
-        const bool collects = k + 1 == scripts.size();
+        const bool collects = k + 1 == scripts.size() && !work.undivided;
         jobs.push_back(slurm_submit(file.string(), jobs.empty() ? "" : jobs.back(), collects));
     }
     tell(options, work, scripts, jobs);
     return options.cluster.wait ? wait_and_tell(options, work, jobs) : exit_done;
+}
+
+int send_bench(const Options& options) {
+    ClusterWork work;
+    work.name = "bench";
+    work.what = "All of it on one node, which it has for itself: what is timed is compared.";
+    work.results = options.output.empty() ? fs::path("output") / "bench" : options.output;
+    work.threads = false;
+    work.alone = work.undivided = true;
+    work.unit = "bench";
+    work.total = 1;
+    work.done = [] { return 0; };
+    return do_on_cluster(options, work);
 }
 
 }  // namespace unravel

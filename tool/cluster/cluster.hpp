@@ -22,6 +22,7 @@ struct ClusterWork {
     std::string before;             ///< words of what must be done before any piece; empty: nothing
     bool threads = true;            ///< the command takes --threads
     bool alone = false;             ///< pieces are timed
+    bool undivided = false;         ///< one job does it all, and nothing is to be concluded after it
     std::function<void()> prepare;  ///< done here before anything is sent; empty: nothing
     std::string unit = "frame";     ///< what is counted while waiting
     int total = 0;                  ///< of them
@@ -39,6 +40,10 @@ class MissingPieces : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
+
+/// `bench` as one job with a node for itself: what it times is compared, so that one machine has to time it
+/// all.
+int send_bench(const Options& options);
 
 /// Why a piece is missing, from what its task printed last. For people.
 std::string why_missing(const std::filesystem::path& results, const std::string& name, int piece);

@@ -100,7 +100,8 @@ std::string job_script_text(const JobScript& script, const fs::path& tool, const
             "# be killed at any time and run again. By hand: sbatch this file; some tasks only: sbatch "
             "--array=3,5.\n";
     }
-    text += "export LP_NUM_THREADS=\"${SLURM_CPUS_PER_TASK:-1}\"  # of the software renderer\n";
+    if (!script.alone)
+        text += "export LP_NUM_THREADS=\"${SLURM_CPUS_PER_TASK:-1}\"  # of the software renderer\n";
     text += fmt::format("{} {} &\n", shell_quoted(tool.string()), script.command);
     return text + std::string(how_it_ends);
 }
