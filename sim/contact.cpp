@@ -26,6 +26,8 @@ constexpr std::uint8_t slip_steps = 3;
 constexpr double pinch_cosine = -0.5;
 // A gap below this is rounding [m]: what rests then rests to the last bit, and asks for nothing.
 constexpr double no_gap = 1e-12;
+// A contact that let go with a pull of this many times the particle's weight is not caught again by its weight.
+constexpr double strong_pull = 10;
 // Contacts this parallel are one direction.
 constexpr double parallel_cosine = 0.999;
 
@@ -51,11 +53,16 @@ bool touches_solid(const Solid& solid, const DeformedSolid* deformed, const Pose
     if (!solid.motion.empty() || deformed)
         touch.velocity = (next * surface.carried - view.x[p]) / view.step;
     touch.pinched = false;
-    // Gravity is foreseen, so that what is laid on a slope is caught before it has begun to slide.
-    const Vec3 coming = view.v[p] + view.step * view.gravity - touch.velocity;
+    // Gravity is foreseen, so that what is laid on a slope is caught before it has begun to slide. Not of what
+    // has just let go: the forces on it, gravity among them, pull it off, and catching it again before it has
+    // moved would weld cloth that is pulled over an edge to it.
+    const bool let_go = known && known->force < 0;
+    const bool pulled_off = let_go && -known->force > strong_pull * view.mass[p] * view.gravity.norm();
+    const Vec3 fall = pulled_off ? Vec3(Vec3::Zero()) : Vec3(view.step * view.gravity);
+    const Vec3 coming = view.v[p] + fall - touch.velocity;
     const double ahead = touch.gap + view.step * touch.normal.dot(coming);
     const bool catches = ahead < -catch_share * solid.offset;
-    if (known) {
+    if (known && !let_go) {
         touch.contact = *known;
         // One that has opened but is about to be run over again is still a contact.
         return catches || touch.gap < open_share * solid.offset;
@@ -245,16 +252,18 @@ void split_force(Group group, const Vec3& force, std::span<double> along) {
     }
 }
 
-// Contact after the solve, from the force that held it; false: released.
-bool judge(const Friction& friction, const Touch& touch, const Vec3& force, double normal, double nothing,
-           Contact& c) {
-    c = touch.contact;
+// Contact after the solve, from the force that held it.
+Contact judge(const Friction& friction, const Touch& touch, const Vec3& force, double normal, double nothing) {
+    Contact c = touch.contact;
     if (touch.pinched) {
         c.force = std::abs(normal);
         c.held = false;
-        return true;
+        return c;
     }
-    if (normal < -nothing) return false;
+    if (normal < -nothing) {
+        c = {c.particle, c.solid, false, 0, normal, Vec3::Zero()};
+        return c;
+    }
     c.force = std::max(normal, 0.0);
     const Vec3 across = force - touch.normal.dot(force) * touch.normal;
     if (c.held && across.norm() > friction.static_ * c.force + nothing) {
@@ -262,7 +271,7 @@ bool judge(const Friction& friction, const Touch& touch, const Vec3& force, doub
         c.sliding = slip_steps;
         c.slip.setZero();
     }
-    return true;
+    return c;
 }
 
 }  // namespace
@@ -356,9 +365,8 @@ void judge_touches(std::span<const Solid> solids, const StepView& view, const Co
         along.resize(group.size());
         split_force(group, force, along);
         for (std::size_t t = 0; t < group.size(); ++t) {
-            Contact after;
             const Friction& friction = solids[group[t].contact.solid].friction;
-            if (judge(friction, group[t], force, along[t], nothing, after)) out.push_back(after);
+            out.push_back(judge(friction, group[t], force, along[t], nothing));
         }
     });
 }

@@ -18,7 +18,8 @@ StepToStep::Shares StepToStep::next(const Simulation& simulation) {
     }
     springs_ = springs;
 
-    const std::vector<Contact>& contacts = simulation.state.contacts;
+    std::vector<Contact> contacts = simulation.state.contacts;
+    std::erase_if(contacts, [](const Contact& c) { return c.force < 0; });  // let go
     const auto place = [](const Contact& c) { return std::tuple(c.particle, c.solid); };
     std::size_t stay = 0, changed = 0;
     auto before = contacts_.begin();
@@ -33,7 +34,7 @@ StepToStep::Shares StepToStep::next(const Simulation& simulation) {
         shares.chatter = static_cast<double>(changed) / static_cast<double>(all);
         shares.jitter = static_cast<double>(all - stay) / static_cast<double>(all);
     }
-    contacts_ = contacts;
+    contacts_ = std::move(contacts);
     return shares;
 }
 

@@ -221,7 +221,7 @@ struct Solver {
     bool decompose = true;      ///< false: one system over all particles
     BendTreatment bend = BendTreatment::scheme;
     Activation activation = Activation::predicted;
-    double activation_band = 0.0;  ///< springs with l > (1 − band) L get their Jacobian, but no force
+    double activation_band = 0.02;  ///< springs with l > (1 − band) L get their Jacobian, but no force
     std::optional<AdaptiveStep> adaptive;  ///< absent: every step is `step`
 };
 

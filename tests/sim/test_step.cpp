@@ -26,7 +26,7 @@ TEST_CASE("at every step the decomposed solution meets the whole system's tolera
     Scene scene = drape();
     Simulation simulation = start_simulation(scene);
     int decomposed_steps = 0;
-    for (int k = 0; k < 100; ++k) {
+    for (int k = 0; k < 120; ++k) {
         step(simulation.model, simulation.options, 0.005, simulation.state, simulation.ws);
         StepWorkspace& ws = simulation.ws;
         decomposed_steps += ws.components.count() > 1;

@@ -133,7 +133,7 @@ Json particle_numbers(const InspectedStep& step, std::int64_t particle) {
     for (std::uint32_t e = ws.system.start[row]; e < ws.system.start[row + 1]; ++e)
         json["coupled_particles"].push_back(ws.components.order[ws.system.entries[e].column]);
     for (const Contact& c : step.record.state.contacts) {
-        if (c.particle != p) continue;
+        if (c.particle != p || c.force < 0) continue;
         json["contacts"].push_back(
             {{"solid", model.solids[c.solid].name}, {"held", c.held}, {"force", c.force}});
     }
