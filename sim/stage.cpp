@@ -85,10 +85,10 @@ void predict(std::span<const Vec3> dv, StepWorkspace& ws) {
                   [&](std::size_t p) { ws.end[p] = ws.base[p] + ws.stage.h * (ws.stage.v_at[p] + dv[p]); });
 }
 
-// Where the step would end if nothing but the constraints changed v*: implicit springs are linearised there.
-// Multistep schemes look ahead by themselves.
-void look_ahead(const ClothModel& model, const StepOptions& options, StepWorkspace& ws) {
-    ws.ahead.clear();
+// Where implicit springs are linearised if not at x*: where the scheme says; or, looking ahead, where the
+// step would end if nothing but the constraints changed v*.
+void place_linearisation(const ClothModel& model, const StepOptions& options, StepWorkspace& ws) {
+    ws.ahead = ws.stage.x_linear;
     if (options.activation != Activation::ahead || scheme_of(options.integrator).multistep) return;
     ws.ahead.resize(model.size());
     parallel_each(model.size(), [&](std::size_t p) {
@@ -161,7 +161,7 @@ void linearise(const ClothModel& model, const StepOptions& options, double h, St
         temporary_springs(model, ws.t_end, stage.x_at, stage.v_at, h, splitting.stretch_threshold, ws.self);
         timer.lap(report.times.collision);
     }
-    look_ahead(model, options, ws);
+    place_linearisation(model, options, ws);
     extension_forces(model.springs, model.mass, stage.x_at, stage.v_at, h, splitting, options.activation_band,
                      ws.extension, ws.taut, ws.ahead);
     if (ws.bend_is_implicit)
@@ -229,6 +229,7 @@ void solve_again_where_taut(const ClothModel& model, const StepOptions& options,
 void iterate(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
              StepWorkspace& ws, StepReport& report) {
     Stage& stage = ws.stage;
+    stage.x_linear.clear();
     const auto advance = [&](double share) {
         parallel_each(model.size(), [&](std::size_t p) {
             stage.v_at[p] += share * ws.dv[p];

@@ -126,7 +126,8 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
     ws.t_end = state.t + h;
     // Forces at (x*, v*) (Sec. 2) and the adaptive IMEX splitting (Sec. 3.5)
     ws.taut.clear();
-    if (options.activation == Activation::predicted) predict_taut(model, state.dv, ws);
+    // Multistep schemes look ahead by themselves: at x*.
+    if (options.activation == Activation::predicted && !scheme.multistep) predict_taut(model, state.dv, ws);
     explicit_forces(model, options, state.t, h, timer, ws, report);
     linearise(model, options, h, timer, ws, report);
 

@@ -34,7 +34,8 @@ bool keep_on() {
 }
 
 void draw(const AccuracyStudy& study, CostAxis axis, const std::filesystem::path& stem) {
-    const Plot plot = accuracy_plot(study.points, study.reference, study.scene.name, study.window(), axis);
+    const Plot plot = accuracy_plot(study.points, study.reference, study.scene.name, study.window(),
+                                    study.scene.clip.fps, axis);
     write_whole_file(stem.string() + ".svg", plot_svg(plot));
     write_png(stem.string() + ".png", plot_image(plot));
 }

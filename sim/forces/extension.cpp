@@ -46,13 +46,17 @@ void extension_forces(const ExtensionSprings& springs, std::span<const double> m
             return;
         }
         const Vec3 u = d / length;
+        // Damping acts along the spring at x: its Jacobian knows how it changes with velocity, not with the
+        // spring's turning, so that taken elsewhere it would cost a second-order scheme its order.
+        const Vec3 turned = looks_ahead && now.squaredNorm() > 0 ? Vec3(now.normalized()) : u;
+        const double slowed = damping * turned.dot(v[j] - v[i]);
         out.direction[s] = u;
         out.state[s] = is_explicit ? SpringState::explicit_ : SpringState::implicit;
         if (length > rest) {
-            out.force[s] = (stiffness * (length - rest) + damping * u.dot(v[j] - v[i])) * u;
+            out.force[s] = stiffness * (length - rest) * u + slowed * turned;
             out.transverse[s] = stiffness * (1.0 - rest / length);
         } else if (will_be_taut) {
-            out.force[s] = (stiffness * (length - rest) + damping * u.dot(v[j] - v[i])) * u;
+            out.force[s] = stiffness * (length - rest) * u + slowed * turned;
             out.transverse[s] = 0;
         } else {
             out.force[s].setZero();

@@ -78,8 +78,8 @@ inline double kappa(double h, double inverse_mass, double stiffness, double damp
 /// within the step. `taut`, (springs) or empty, marks slack springs that will be taut when the step ends:
 /// handled implicitly, such a spring gets its Jacobian (t = 0) and the force k_s (l − L) + k_d û·(v_j − v_i)
 /// on its line, a push that the linearised end-of-step force outgrows. `ahead`, (particles) or empty: where
-/// implicit springs are evaluated instead of at x; one within the band's reach at x but slack there gets its
-/// Jacobian (t = 0) and no force.
+/// implicit springs are evaluated instead of at x, but for the line of their damping; one within the band's
+/// reach at x but slack there gets its Jacobian (t = 0) and no force.
 void extension_forces(const ExtensionSprings& springs, std::span<const double> mass, std::span<const Vec3> x,
                       std::span<const Vec3> v, double h, const Splitting& splitting, double band,
                       ExtensionForces& out, std::span<const std::uint8_t> taut = {},

@@ -16,6 +16,7 @@ void begin_euler(const ClothState& state, double h, Stage& stage) {
     stage.h = h;
     stage.h_force = h;
     stage.x = stage.x_at = state.x;
+    stage.x_linear.clear();
     stage.v = stage.v_at = state.v;
 }
 

@@ -15,12 +15,14 @@ namespace unravel {
 /// with f* = f(x*, v*), K = ∂f/∂x and D = ∂f/∂v of the implicit springs at (x*, v*). Explicit springs have no
 /// K and D, so that (x*, v*) is also where they are evaluated. Solved for δ = v' − v*:
 ///   (M − h̃ D − h̃² K) δ = M (ṽ − v*) + h_f f* + h̃ K (x̃ + h̃ v* − x*).
-/// Backward Euler: x̃ = x* = x, ṽ = v* = v, h̃ = h_f = h, which is Eq. (5).
+/// Backward Euler: x̃ = x* = x, ṽ = v* = v, h̃ = h_f = h, which is Eq. (5). Implicit springs may be linearised
+/// at positions of their own in place of x*, explicit ones never.
 struct Stage {
     double h = 0;                  ///< s, h̃
     double h_force = 0;            ///< s, h_f; differs from h̃ where f* stands for an old force too
     std::vector<Vec3> x, v;        ///< (particles) x̃ [m] and ṽ [m/s]
     std::vector<Vec3> x_at, v_at;  ///< (particles) x* [m] and v* [m/s]
+    std::vector<Vec3> x_linear;    ///< (particles) where implicit springs are linearised [m]; empty: at x*
 };
 
 /// A time stepping scheme. A new one is its file, its line in scheme_of(), and its test.

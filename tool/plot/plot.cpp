@@ -32,6 +32,8 @@ Rgb series_color(const Plot& plot, std::size_t k) {
     constexpr Rgb dark_yellow{176, 152, 0};
     // Blue, vermilion, green, pink …: those that differ most come first.
     constexpr std::size_t order[] = {4, 5, 2, 6, 0, 1, 9, 7, 3, 8};
+    constexpr Rgb faint_grey{190, 194, 200};
+    if (plot.series[k].faint) return faint_grey;
     const int asked = plot.series[k].color;
     const std::size_t picked =
         asked >= 0 ? static_cast<std::size_t>(asked) % component_palette.size() : order[k % std::size(order)];
@@ -227,7 +229,7 @@ private:
                 continue;
             }
             if (!y_.holds(p.y)) continue;
-            if (s.style != SeriesStyle::line) c_.disc(x, y_(p.y), 3.4);
+            if (s.style != SeriesStyle::line) c_.disc(x, y_(p.y), s.faint ? 2.4 : 3.4);
             error_bar(x, p);
             if (x_.holds(p.left) && x_.holds(p.right)) {
                 c_.width(1.2);

@@ -28,7 +28,8 @@ struct PlotSeries {
     std::vector<PlotPoint> points{};
     SeriesStyle style = SeriesStyle::line_and_points;
     bool dashed = false;
-    int color = -1;  ///< of the component palette; −1: the series' own number
+    int color = -1;      ///< of the component palette; −1: the series' own number
+    bool faint = false;  ///< grey and small, in place of a colour
 };
 
 struct PlotAxis {

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "tool/reproduce/claims.hpp"
 
@@ -16,7 +18,11 @@ constexpr std::array<std::pair<Preconditioner, const char*>, 3> preconditioners{
      {Preconditioner::block, "C (block diagonal)"},
      {Preconditioner::constrained_block, "P (constrained)"}}};
 
-// Iterations of each preconditioner on the very same undecomposed systems: the last of every `every` steps.
+constexpr int frames_between = 2;
+constexpr double large_problem = 10'000;  // particles
+
+// Iterations of each preconditioner on the very same undecomposed systems, of the last step of every other
+// frame; the steps between are left to the fastest solver.
 struct Iterations {
     double particles = 0;
     std::array<double, 3> mean{};
@@ -25,7 +31,6 @@ struct Iterations {
 
 Iterations measure(const Scene& scene, double from, int systems) {
     Simulation simulation = start_simulation(scene);
-    simulation.options.decompose = false;
     const int first = static_cast<int>(std::lround(from * scene.clip.fps));
     Iterations out;
     out.particles = static_cast<double>(simulation.model.size());
@@ -33,10 +38,15 @@ Iterations measure(const Scene& scene, double from, int systems) {
     SolveWorkspace ws;
     std::vector<ComponentSolve> solves;
     for (int frame = 0; frame < scene.clip.frames() && taken < systems; ++frame) {
+        const bool taken_here = frame >= first && (frame - first) % frames_between == 0;
+        simulation.options.solve.preconditioner = Preconditioner::automatic;
+        simulation.options.decompose = true;
         for (int k = 0; k + 1 < simulation.steps_per_frame; ++k) next_step(simulation);
         const std::vector<Vec3> guess = simulation.state.dv;
+        simulation.options.solve.preconditioner = Preconditioner::constrained_block;
+        simulation.options.decompose = !taken_here;
         const StepReport report = next_step(simulation);
-        if (frame < first || (frame - first) % 4 != 0) continue;
+        if (!taken_here) continue;
         ++taken;
         out.partly += report.partly / out.particles;
         for (std::size_t p = 0; p < preconditioners.size(); ++p) {
@@ -52,6 +62,21 @@ Iterations measure(const Scene& scene, double from, int systems) {
     return out;
 }
 
+// What P saves at least over the problems that are large.
+struct Large {
+    int sizes = 0;
+    double saved = 1, saved_of_block = 1;
+    double c_ratio =
+        std::numeric_limits<double>::infinity();  ///< iterations with C over those without, least
+    void see(const Iterations& i) {
+        if (i.particles < large_problem) return;
+        ++sizes;
+        saved = std::min(saved, 1 - i.mean[2] / i.mean[0]);
+        saved_of_block = std::min(saved_of_block, 1 - i.mean[2] / i.mean[1]);
+        c_ratio = std::min(c_ratio, i.mean[1] / i.mean[0]);
+    }
+};
+
 }  // namespace
 
 Claim preconditioner_claim(const ReproduceScale& scale) {
@@ -62,19 +87,20 @@ Claim preconditioner_claim(const ReproduceScale& scale) {
         "the larger problems. Unconstrained, P is C.";
     constexpr const char* scene_name = "drape_sphere";
     constexpr double from = 0.5;
-    const int systems = scale.quick ? 2 : 5;
+    const int systems = scale.quick ? 2 : 10;
     Plot plot;
     plot.title = "CG iterations, constrained case";
     plot.x = {"particles n", true, {}, {}, {}};
     plot.y = {"CG iterations", true, {}, {}, {}};
     for (const auto& [preconditioner, name] : preconditioners) plot.series.push_back({name, {}});
     Iterations largest;
+    Large large;
     claim.numbers["points"] = nlohmann::ordered_json::array();
     for (const int side : scale.sides()) {
         const std::optional<Scene> scene =
             paper_scene(scene_name, {.quick = false},
                         {fmt::format("cloth.particles=[{},{}]", side, side),
-                         fmt::format("clip.duration={}", from + (4 * systems + 1) / 25.0)});
+                         fmt::format("clip.duration={}", from + (frames_between * systems + 1) / 25.0)});
         if (!scene) {
             claim.ours = fmt::format("MISSING: there is no scenes/{}.toml beside the tool.", scene_name);
             claim.numbers["missing"] = true;
@@ -88,29 +114,35 @@ Claim preconditioner_claim(const ReproduceScale& scale) {
                                            {"block", largest.mean[1]},
                                            {"constrained_block", largest.mean[2]},
                                            {"partly_constrained_share", largest.partly}});
+        large.see(largest);
     }
-    const double saved = 1 - largest.mean[2] / largest.mean[0], c_ratio = largest.mean[1] / largest.mean[0];
-    const double saved_of_block = 1 - largest.mean[2] / largest.mean[1];
-    claim.ours = fmt::format(
-        "At n = {:.0f}: {:.1f} iterations without, {:.1f} with C, {:.1f} with P: P needs {:.0f}% {} "
-        "than none and {:.0f}% {} than C; C needs {:.0f}% {} than none. Means over {} systems of a drape on "
-        "a sphere, each solved by all "
-        "three from the same guess under one stopping rule.",
-        largest.particles, largest.mean[0], largest.mean[1], largest.mean[2], 100 * std::abs(saved),
-        saved >= 0 ? "fewer" : "more", 100 * std::abs(saved_of_block), saved_of_block >= 0 ? "fewer" : "more",
-        100 * std::abs(c_ratio - 1), c_ratio > 1 ? "more" : "fewer", systems);
-    if (c_ratio <= 1 || saved < 0.25 || saved > 0.35) {
+    const auto fewer = [](double share) {
+        return fmt::format("{:.0f}% {}", 100 * std::abs(share), share >= 0 ? "fewer" : "more");
+    };
+    claim.ours = fmt::format("At n = {:.0f}: {:.1f} iterations without, {:.1f} with C, {:.1f} with P. ",
+                             largest.particles, largest.mean[0], largest.mean[1], largest.mean[2]);
+    if (large.sizes > 0) {
+        claim.ours += fmt::format(
+            "Over the {} sizes of {:.0f} particles and more, P needs at least {} than none and {} than C. ",
+            large.sizes, large_problem, fewer(large.saved), fewer(large.saved_of_block));
+    }
+    claim.ours += fmt::format(
+        "Means over {} systems of a drape on a sphere, each solved by all three from the same guess under "
+        "one "
+        "stopping rule.",
+        systems);
+    if (large.c_ratio <= 1 || large.saved > 0.35 || std::min(large.saved, large.saved_of_block) < 0.3) {
         claim.why = fmt::format(
             "The paper does not name its scene. C and P differ only where constraints mix directions that "
-            "C's blocks "
-            "couple; here {:.0f}% of the particles have one or two free directions.",
-            100 * largest.partly);
+            "C's blocks couple, which friction and folds decide: here {:.0f}% of the particles have one or "
+            "two free directions, and C needs {:.2f} times the iterations of none at its best large size.",
+            100 * largest.partly, large.c_ratio);
     }
     claim.commands = {"./run reproduce",
                       "./run simulate scenes/drape_sphere.toml --set solver.preconditioner=none --set "
                       "solver.decompose=false -o output/none"};
-    claim.numbers["saved_by_P"] = saved;
-    claim.numbers["saved_by_P_against_C"] = saved_of_block;
+    claim.numbers["large_saved_by_P"] = large.saved;
+    claim.numbers["large_saved_by_P_against_C"] = large.saved_of_block;
     claim.figures.push_back({"fig9", "As the paper's Fig. 9.", plot_svg(plot), plot_image(plot), true});
     return claim;
 }

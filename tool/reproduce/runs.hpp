@@ -15,7 +15,7 @@ struct ReproduceScale {
     int repetitions() const { return quick ? 1 : 5; }
     /// Sides of the square grids of Fig. 9.
     std::vector<int> sides() const {
-        return quick ? std::vector<int>{11, 16, 23} : std::vector<int>{16, 23, 32, 45, 64, 91, 128};
+        return quick ? std::vector<int>{11, 16, 23} : std::vector<int>{16, 23, 32, 45, 64, 100, 141, 200};
     }
 };
 

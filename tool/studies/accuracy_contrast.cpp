@@ -14,6 +14,8 @@ namespace {
 
 // Errors nearer to the floor than this are the references' doubt as much as a method's error.
 constexpr double clear_of_floor = 2;
+// Nobody asks for a cloth that is a fifth of its size off.
+constexpr int coarsest_power = -1;
 // Times nearer than this are the same.
 constexpr double same_time = 1.05;
 
@@ -121,6 +123,51 @@ std::string following(const AccuracyStudy& study) {
     return text;
 }
 
+// What stability alone asks of explicit steps: the largest that did not blow up.
+std::string explicit_words(const AccuracyStudy& study) {
+    const std::vector<Plain> curves = plain_curves(study);
+    const AccuracyCurve* curve = curve_of(curves, Integrator::explicit_);
+    if (!curve) return "explicit was not tried";
+    const auto stable = std::find_if(curve->points.begin(), curve->points.end(),
+                                     [](const AccuracyPoint* p) { return !p->broke; });
+    const int fps = study.scene.clip.fps;
+    if (stable == curve->points.end())
+        return fmt::format("explicit blew up at every step tried, down to 1/{} s",
+                           curve->points.back()->setting.steps_per_frame * fps);
+    const AccuracyPoint& p = **stable;
+    std::string text =
+        fmt::format("explicit is stable from steps of 1/{} s on, with an error of {:.1g} at once",
+                    p.setting.steps_per_frame * fps, p.error);
+    std::vector<Plain> others;
+    for (const Plain& plain : curves) {
+        if (plain.integrator != Integrator::explicit_) others.push_back(plain);
+    }
+    const Plain* rival = cheapest_at(others, p.error);
+    if (!rival) return text + ", which no other method reached";
+    const double ratio = p.median() / *cost_at(rival->curve, p.error);
+    return text + fmt::format(" and {:.2g} times the time of the cheapest other method at that error ({})",
+                              ratio, scheme_of(rival->integrator).name);
+}
+
+// Names of methods stand once, beside the right plot; orders differ between the two and are left out.
+void one_legend(std::array<Plot, 2>& plots) {
+    for (Plot& plot : plots) {
+        for (PlotSeries& series : plot.series) {
+            const std::size_t order = series.label.find(" (order");
+            if (order != series.label.npos) series.label.erase(order);
+        }
+    }
+    for (PlotSeries& left : plots[0].series) {
+        const bool named = std::any_of(plots[1].series.begin(), plots[1].series.end(),
+                                       [&](const PlotSeries& s) { return s.label == left.label; });
+        if (!named) {
+            plots[1].series.push_back(left);
+            plots[1].series.back().points.clear();
+        }
+        left.label.clear();
+    }
+}
+
 std::string capital(std::string text) {
     if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     return text;
@@ -160,7 +207,7 @@ std::vector<double> error_levels(const AccuracyStudy& study) {
     const double finest = clear_of_floor * study.reference.floor;
     std::vector<double> levels;
     if (!(finest > 0)) return levels;
-    for (int power = 0; std::pow(10.0, power) > finest; --power) {
+    for (int power = coarsest_power; std::pow(10.0, power) > finest; --power) {
         for (const double level : {std::pow(10.0, power), 0.3 * std::pow(10.0, power)}) {
             if (level <= coarsest && level > finest) levels.push_back(level);
         }
@@ -186,14 +233,16 @@ std::string winner_table(const AccuracyStudy& study) {
 }
 
 std::string contrast_words(const AccuracyStudy& soft, const AccuracyStudy& stiff, double times) {
-    return fmt::format("On the cloth as it is, {}. {}. On one {:g} times stiffer, {}. {}.", winners(soft),
-                       capital(following(soft)), times, winners(stiff), capital(following(stiff)));
+    return fmt::format("On the cloth as it is, {}. {}. {}. On one {:g} times stiffer, {}. {}. {}.",
+                       winners(soft), capital(explicit_words(soft)), capital(following(soft)), times,
+                       winners(stiff), capital(explicit_words(stiff)), capital(following(stiff)));
 }
 
 std::array<Plot, 2> contrast_plots(const AccuracyStudy& soft, const AccuracyStudy& stiff, double times) {
-    std::array<Plot, 2> plots{
-        accuracy_plot(soft.points, soft.reference, soft.scene.name, soft.window(), CostAxis::time),
-        accuracy_plot(stiff.points, stiff.reference, stiff.scene.name, stiff.window(), CostAxis::time)};
+    std::array<Plot, 2> plots{accuracy_plot(soft.points, soft.reference, soft.scene.name, soft.window(),
+                                            soft.scene.clip.fps, CostAxis::time),
+                              accuracy_plot(stiff.points, stiff.reference, stiff.scene.name, stiff.window(),
+                                            stiff.scene.clip.fps, CostAxis::time)};
     plots[0].title = fmt::format("What accuracy costs: {}", soft.scene.name);
     plots[1].title = fmt::format("The same cloth {:g} times stiffer", times);
     double low[2] = {1e300, 1e300}, high[2] = {0, 0};
@@ -217,7 +266,7 @@ std::array<Plot, 2> contrast_plots(const AccuracyStudy& soft, const AccuracyStud
         plot.y.from = low[1] / 1.3, plot.y.to = high[1] * 1.5;
         plot.height = 460;
     }
-    for (PlotSeries& series : plots[0].series) series.label.clear();
+    one_legend(plots);
     plots[0].width = 560;
     plots[1].width = 730;
     return plots;

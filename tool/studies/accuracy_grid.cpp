@@ -20,12 +20,16 @@ constexpr const char* bend_treatments[] = {"scheme", "explicit"};
 
 const AccuracySetting common;
 
-// Steps a frame: a factor of two apart, and an eighth of the reference's at most.
-std::vector<int> ladder(int coarsest, int finest, int reference) {
+// Steps a frame: a factor of two apart, and `finer` times larger than the reference's at least.
+std::vector<int> ladder(int coarsest, int finest, int reference, int finer = 8) {
     std::vector<int> steps;
-    for (int k = coarsest; k <= std::min(finest, reference / 8); k *= 2) steps.push_back(k);
+    for (int k = coarsest; k <= std::min(finest, reference / finer); k *= 2) steps.push_back(k);
     return steps;
 }
+
+// Explicit steps are to come down to where they are stable. They are of first order, so that the reference,
+// of second, need not be as far below.
+constexpr int coarsest_explicit = 8, finest_explicit = 1024, reference_below_explicit = 2;
 
 void add(std::vector<AccuracySetting>& grid, AccuracySetting setting, const std::vector<int>& steps) {
     for (const int k : steps) {
@@ -110,7 +114,9 @@ std::vector<AccuracySetting> accuracy_grid(const AccuracyReference& reference) {
     };
     for (const Integrator integrator : integrators) {
         add(grid, variant(integrator, [](AccuracySetting&) {}),
-            integrator == Integrator::explicit_ ? ladder(4, 256, finest) : ladder(1, 64, finest));
+            integrator == Integrator::explicit_
+                ? ladder(coarsest_explicit, finest_explicit, finest, reference_below_explicit)
+                : ladder(1, 64, finest));
     }
     const std::vector<int> few = ladder(2, 16, finest), wide = ladder(4, 64, finest);
     for (std::size_t k = 0; k < std::size(activations); ++k) {

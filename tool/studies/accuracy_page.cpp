@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "sim/integrators/scheme.hpp"
@@ -47,18 +48,35 @@ PlotPoint plotted(const AccuracyPoint& p, double seconds_simulated, CostAxis axi
     return point;
 }
 
+bool best_of_front(const AccuracyPoint& p, const std::vector<const AccuracyPoint*>& front) {
+    return std::find(front.begin(), front.end(), &p) != front.end();
+}
+
+// Beside the rightmost cross.
+void name_the_broken(Plot& plot) {
+    PlotPoint* last = nullptr;
+    for (PlotSeries& series : plot.series) {
+        if (series.faint) continue;
+        for (PlotPoint& p : series.points) {
+            if (!std::isfinite(p.y) && (!last || p.x > last->x)) last = &p;
+        }
+    }
+    if (last) last->note = "blew up";
+}
+
 }  // namespace
 
 Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyReference& reference,
-                   const std::string& scene, double seconds_simulated, CostAxis axis) {
+                   const std::string& scene, double seconds_simulated, int fps, CostAxis axis) {
     Plot plot;
-    plot.title = fmt::format("What accuracy costs: {}", scene);
+    plot.title = fmt::format("What accuracy costs: {} (lower: more accurate; further left: cheaper)", scene);
     plot.x.label = axis == CostAxis::time ? "computing time for a second simulated [s]"
                                           : "row-vector multiplies for a second simulated";
-    plot.y.label = "error: RMS distance from the reference / diagonal";
+    plot.y.label = "error: RMS distance from the reference / cloth's diagonal";
     plot.x.log = plot.y.log = true;
     plot.width = 900;
     plot.height = 600;
+    const std::vector<const AccuracyPoint*> front = pareto_front(points);
     for (const AccuracyCurve& curve : curves_of(points, reference.floor)) {
         // Explicit steps multiply no rows.
         if (axis == CostAxis::rvm && curve.points.front()->setting.integrator == Integrator::explicit_)
@@ -70,10 +88,10 @@ Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyRefer
             if (curve.order) series.label += fmt::format(" (order {:.1f})", *curve.order);
             series.color = static_cast<int>(setting.integrator);
         } else {
-            // Variants of a method are points of one look; the table tells them apart.
-            series.label = fmt::format("{}, varied", scheme_of(setting.integrator).name);
+            // The table tells them apart.
+            series.label = "other thresholds, tolerances …";
             series.style = SeriesStyle::points;
-            series.color = static_cast<int>(setting.integrator);
+            series.faint = true;
         }
         auto same = std::find_if(plot.series.begin(), plot.series.end(), [&](const PlotSeries& other) {
             return other.style == series.style && other.label == series.label;
@@ -83,16 +101,34 @@ Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyRefer
             same->points.push_back(plotted(*p, seconds_simulated, axis));
             // Bars of points without a line would bury those with one.
             if (!setting.plain()) same->points.back().left = same->points.back().right = nothing;
+            if (setting.plain() && best_of_front(*p, front))
+                same->points.back().note = fmt::format("1/{} s", p->setting.steps_per_frame * fps);
         }
     }
+    // Behind the lines, and last in the legend but for the front.
+    const auto varied =
+        std::find_if(plot.series.begin(), plot.series.end(), [](const PlotSeries& s) { return s.faint; });
+    if (varied != plot.series.end()) {
+        PlotSeries behind = *varied;
+        plot.series.erase(varied);
+        PlotSeries named{behind.label, {}, behind.style};
+        named.faint = true;
+        behind.label.clear();
+        plot.series.insert(plot.series.begin(), std::move(behind));
+        plot.series.push_back(std::move(named));
+    }
+    name_the_broken(plot);
     if (axis == CostAxis::time) {
-        PlotSeries front{
-            "Pareto front", {}, SeriesStyle::line, true, static_cast<int>(Integrator::adaptive_imex2) + 1};
-        for (const AccuracyPoint* p : pareto_front(points)) {
-            front.points.push_back(plotted(*p, seconds_simulated, axis));
-            front.points.back().left = front.points.back().right = nothing;
+        PlotSeries line{"cheapest for its error",
+                        {},
+                        SeriesStyle::line,
+                        true,
+                        static_cast<int>(Integrator::adaptive_imex2) + 1};
+        for (const AccuracyPoint* p : front) {
+            line.points.push_back(plotted(*p, seconds_simulated, axis));
+            line.points.back().left = line.points.back().right = nothing;
         }
-        plot.series.push_back(std::move(front));
+        plot.series.push_back(std::move(line));
     }
     plot.guides.push_back({reference.floor, true, "floor: the two references differ by this"});
     return plot;
@@ -107,20 +143,21 @@ std::string accuracy_page(const std::vector<AccuracyPoint>& points, const Accura
         "<h1>What accuracy costs: {0}</h1>\n<p><strong>{1}</strong></p>\n{2}\n"
         "<p>Each point is one run of the scene's first {3:.2f} s. Its error is the distance of its particles "
         "from a reference at every frame, RMS over particles and frames, as a share of the cloth's diagonal; "
-        "its cost is the median time of the steps over interleaved runs, with the fastest and slowest as "
-        "bars. "
-        "Crosses at the upper edge are runs that blew up. The reference is {4} at steps of 1/{5} s and a "
-        "tolerance of {6:.0e}; {7} at steps of 1/{8} s differs from it by {9:.2e}: nothing below that line "
-        "can "
-        "be told apart. Lines hold a threshold of 0.2 and a tolerance of 1e-3; points without a line vary "
-        "one "
-        "of them, or how slack springs are activated.</p>\n{10}\n<pre>{11}</pre></html>\n",
+        "its cost is the median time of the steps over interleaved runs, with their middle half as a bar. "
+        "Along a line the step is halved from point to point; steps are named where no other run beats the "
+        "point in both. Crosses at the upper edge are runs that blew up. The reference is {4} at steps of "
+        "1/{5} s and a tolerance of {6:.0e}; {7} at steps of 1/{8} s differs from it by {9:.2e}: nothing "
+        "below "
+        "that line can be told apart. Lines hold a threshold of 0.2 and a tolerance of 1e-3; grey points "
+        "vary "
+        "one of them, how bending is treated, or how slack springs are activated.</p>\n{10}\n"
+        "<pre>{11}</pre></html>\n",
         escaped(scene), escaped(recommendation(points, error, seconds_simulated, fps)),
-        inlined(plot_svg(accuracy_plot(points, reference, scene, seconds_simulated, CostAxis::time))),
+        inlined(plot_svg(accuracy_plot(points, reference, scene, seconds_simulated, fps, CostAxis::time))),
         seconds_simulated, reference.first.method(), reference.first.steps_per_frame * fps,
         reference.first.tolerance, reference.second.method(), reference.second.steps_per_frame * fps,
         reference.floor,
-        inlined(plot_svg(accuracy_plot(points, reference, scene, seconds_simulated, CostAxis::rvm))),
+        inlined(plot_svg(accuracy_plot(points, reference, scene, seconds_simulated, fps, CostAxis::rvm))),
         escaped(accuracy_table(points, reference, error, fps)));
 }
 

@@ -44,7 +44,7 @@ std::string recommendation(const std::vector<AccuracyPoint>& points, double erro
 /// Error over time, or over RVMs.
 enum class CostAxis { time, rvm };
 Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyReference& reference,
-                   const std::string& scene, double seconds_simulated, CostAxis axis);
+                   const std::string& scene, double seconds_simulated, int fps, CostAxis axis);
 
 /// The page: plots within it, table, sentence.
 std::string accuracy_page(const std::vector<AccuracyPoint>& points, const AccuracyReference& reference,
