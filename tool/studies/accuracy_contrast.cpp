@@ -117,9 +117,13 @@ std::string following(const AccuracyStudy& study) {
                   "adaptive-imex costs {:.2g} to {:.2g} times the better of explicit and implicit "
                   "(at {:.0e}, at {:.0e})",
                   best, worst, at_best, at_worst);
-    if (saved_most >= saved_least)
+    if (saved_most >= saved_least && saved_least >= 0) {
         text += fmt::format(", and {:.0f} to {:.0f}% less than implicit at the same error", 100 * saved_least,
                             100 * saved_most);
+    } else if (saved_most >= saved_least) {
+        text += fmt::format(", and at the same error between {:.2g} and {:.2g} times the time of implicit",
+                            1 - saved_most, 1 - saved_least);
+    }
     return text;
 }
 
