@@ -20,7 +20,7 @@ struct AccuracySetting {
     double threshold = 0.2;   ///< of the adaptive schemes
     double tolerance = 1e-3;  ///< of CG
     Activation activation = Solver{}.activation;
-    double band = Solver{}.activation_band;
+    double band = 0;  ///< the default's costs accuracy (docs/accuracy.md)
     BendTreatment bend = BendTreatment::scheme;
     /// "adaptive-imex", "adaptive-imex threshold 0.05": all but the step, by which curves are drawn.
     std::string method() const;

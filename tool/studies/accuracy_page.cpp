@@ -148,7 +148,8 @@ std::string accuracy_page(const std::vector<AccuracyPoint>& points, const Accura
         "point in both. Crosses at the upper edge are runs that blew up. The reference is {4} at steps of "
         "1/{5} s and a tolerance of {6:.0e}; {7} at steps of 1/{8} s differs from it by {9:.2e}: nothing "
         "below "
-        "that line can be told apart. Lines hold a threshold of 0.2 and a tolerance of 1e-3; grey points "
+        "that line can be told apart. Lines hold a threshold of 0.2, a tolerance of 1e-3 and no activation "
+        "band; grey points "
         "vary "
         "one of them, how bending is treated, or how slack springs are activated.</p>\n{10}\n"
         "<pre>{11}</pre></html>\n",

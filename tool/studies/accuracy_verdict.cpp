@@ -124,10 +124,10 @@ std::string recommendation(const std::vector<AccuracyPoint>& points, double erro
             front.empty() ? 0.0 : front.back()->error);
     }
     std::string text = fmt::format(
-        "For an error of {:.2g} of the cloth's diagonal take {} with steps of {}: {:.3g} s for each second "
-        "simulated, error {:.2g}.",
-        error, best->setting.method(), step_text(best->setting, fps), best->median() / seconds_simulated,
-        best->error);
+        "For an error of {:.2g} of the cloth's diagonal take {} with steps of {} and activation_band = {}: "
+        "{:.3g} s for each second simulated, error {:.2g}.",
+        error, best->setting.method(), step_text(best->setting, fps), best->setting.band,
+        best->median() / seconds_simulated, best->error);
     for (const Integrator rival : {Integrator::implicit, Integrator::explicit_}) {
         const AccuracyPoint* other = cheapest_within(points, error, &rival);
         if (rival == best->setting.integrator) continue;
