@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -91,11 +92,23 @@ Vec3f mean_of(const Image& image) {
     return sum / static_cast<float>(std::max(image.width * image.height, 1));
 }
 
-GlProgram fabric_program(const ClothMesh& mesh, bool software) {
+// Pixels a thread from which on it is seen; see weave.glsl.
+constexpr float least_thread = 1 / 0.6f;
+
+float thread_of(const ClothAppearance& look) {
+    // Coarser than real yarn, so that the weave is seen at the distance a whole cloth is shown from.
+    // A twill lives by its diagonals, four threads wide.
+    return look.weave == WeavePattern::twill ? std::min(look.period / 9, 0.006f)
+                                             : std::min(look.period / 24, 0.0025f);
+}
+
+/// `threads`: some may be large enough to be seen.
+GlProgram fabric_program(const ClothMesh& mesh, bool software, bool threads) {
     const ClothAppearance& look = mesh.appearance;
     const std::string defines = fmt::format(
-        "#define WEAVE {}\n#define PICTURE {}\n#define LIGHT_AT_VERTICES {}\n", static_cast<int>(look.weave),
-        mesh.texture.pixels.empty() ? 0 : 1, software && mesh.triangles.size() > fine_mesh ? 1 : 0);
+        "#define WEAVE {}\n#define PICTURE {}\n#define LIGHT_AT_VERTICES {}\n#define THREADS {}\n",
+        static_cast<int>(look.weave), mesh.texture.pixels.empty() ? 0 : 1,
+        software && mesh.triangles.size() > fine_mesh ? 1 : 0, threads ? 1 : 0);
     GlProgram program({"frame.glsl", "light.glsl", "sky.glsl", "fabric.glsl", "cloth.vert"},
                       {"frame.glsl", "light.glsl", "pattern.glsl", "fabric.glsl", "weave.glsl", "cloth.frag"},
                       defines);
@@ -103,12 +116,8 @@ GlProgram fabric_program(const ClothMesh& mesh, bool software) {
     program.sampler("picture", 0);
     const Vec3f front = linear(look.front), second = linear(look.front_second), back = linear(look.back);
     const std::array<Vec3f, 2> yarn_front{front, second}, yarn_back{back, mix(back, second, 0.3f)};
-    glUniform1f(program.uniform("period"), look.period);
-    // Coarser than real yarn, so that the weave is seen at the distance a whole cloth is shown from.
-    // A twill lives by its diagonals, four threads wide.
-    glUniform1f(program.uniform("thread"), look.weave == WeavePattern::twill
-                                               ? std::min(look.period / 9, 0.006f)
-                                               : std::min(look.period / 24, 0.0025f));
+    glUniform1f(program.uniform("per_period"), 1 / look.period);
+    glUniform1f(program.uniform("per_thread"), 1 / thread_of(look));
     glUniform3fv(program.uniform("yarn_front"), 2, yarn_front[0].data());
     glUniform3fv(program.uniform("yarn_back"), 2, yarn_back[0].data());
     const std::array<Vec3f, 2> mean{
@@ -121,7 +130,10 @@ GlProgram fabric_program(const ClothMesh& mesh, bool software) {
 }  // namespace
 
 ClothRenderer::Cloth::Cloth(const ClothMesh& of, bool software)
-    : mesh(&of), fabric(fabric_program(of, software)) {}
+    : mesh(&of),
+      near(fabric_program(of, software, true)),
+      far(fabric_program(of, software, false)),
+      thread(thread_of(of.appearance)) {}
 
 ClothRenderer::ClothRenderer(const DrawScene& scene, bool software) {
     std::size_t most = 0, particles = 0;
@@ -151,8 +163,10 @@ ClothRenderer::ClothRenderer(const DrawScene& scene, bool software) {
             Vec2f extent(1e-6f, 1e-6f);
             for (const Vec2f& uv : mesh.uv) extent = extent.cwiseMax(uv);
             const Vec2f scale = extent.cwiseInverse();
-            cloth.fabric.use();
-            glUniform2fv(cloth.fabric.uniform("picture_scale"), 1, scale.data());
+            for (const GlProgram* program : {&cloth.near, &cloth.far}) {
+                program->use();
+                glUniform2fv(program->uniform("picture_scale"), 1, scale.data());
+            }
         }
     }
     normals_.resize(particles);
@@ -162,11 +176,15 @@ ClothRenderer::ClothRenderer(const DrawScene& scene, bool software) {
 }
 
 void ClothRenderer::update_shape(const DrawFrame& frame) {
-    for (const Cloth& cloth : cloths_) {
+    for (Cloth& cloth : cloths_) {
         const std::vector<std::uint32_t>& particle = cloth.mesh->particle;
         smooth_normals(*cloth.mesh, frame.positions, normals_);
-        for (std::size_t i = 0; i < particle.size(); ++i)
+        float nearest = std::numeric_limits<float>::max();
+        for (std::size_t i = 0; i < particle.size(); ++i) {
             scratch_[i] = {frame.positions[particle[i]], normals_[particle[i]]};
+            nearest = std::min(nearest, (scratch_[i].position - frame.camera.position).squaredNorm());
+        }
+        cloth.distance = std::sqrt(nearest);
         update_buffer(GL_ARRAY_BUFFER, cloth.vertices, std::span(scratch_).first(particle.size()));
     }
 }
@@ -225,9 +243,9 @@ void ClothRenderer::draw_outline(const Outline& outline) {
     glDrawElements(GL_TRIANGLES, outline.count, GL_UNSIGNED_INT, nullptr);
 }
 
-void ClothRenderer::draw_fabric() const {
+void ClothRenderer::draw_fabric(float pixels) const {
     for (const Cloth& cloth : cloths_) {
-        cloth.fabric.use();
+        (cloth.thread * pixels > least_thread * cloth.distance ? cloth.near : cloth.far).use();
         glActiveTexture(GL_TEXTURE0);
         glBindTexture(GL_TEXTURE_2D, cloth.texture);
         draw_triangles(cloth);

@@ -26,7 +26,8 @@ public:
     void draw_coarse() const;
     /// The same in enough triangles for the key light's map.
     void draw_casters() const;
-    void draw_fabric() const;
+    /// `pixels`: that a metre takes at a depth of 1 m.
+    void draw_fabric(float pixels) const;
 
 private:
     struct Vertex {
@@ -40,7 +41,9 @@ private:
     };
     struct Cloth {
         const ClothMesh* mesh;
-        GlProgram fabric;  ///< built for this cloth's weave
+        GlProgram near, far;  ///< built for this cloth's weave, with its threads and without
+        float thread;         ///< m between threads
+        float distance = 0;   ///< m from the eye to the nearest particle
         GlVertexArray vertex_array;
         GlBuffer vertices, uvs, colors, indices;
         Outline casters, coarse;

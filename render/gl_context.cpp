@@ -62,7 +62,7 @@ DeviceChoice parse_device_choice(std::string_view text) {
     int index = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
     if (text.empty() || error != std::errc{} || end != text.data() + text.size() || index < 0)
-        throw RendererError(fmt::format(
+        throw DeviceChoiceError(fmt::format(
             "--device {}: give auto, gpu, software or the number of an EGL device (unravel doctor lists "
             "them)",
             text));

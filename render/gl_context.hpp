@@ -34,7 +34,12 @@ struct RendererError : std::runtime_error {
     std::vector<RendererAttempt> attempts;
 };
 
-/// "auto", "gpu", "software" or a device number. Throws RendererError on anything else.
+/// A choice that can't be read: a mistake on the command line.
+struct DeviceChoiceError : RendererError {
+    using RendererError::RendererError;
+};
+
+/// "auto", "gpu", "software" or a device number. Throws DeviceChoiceError on anything else.
 DeviceChoice parse_device_choice(std::string_view text);
 
 /// An off-screen GL context, current on the thread that made it until it is destroyed on that thread.

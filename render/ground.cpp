@@ -1,5 +1,7 @@
 #include "render/ground.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -44,12 +46,9 @@ Ground::Ground(const DrawScene& scene, float reach, int map_size)
       open_({"map.vert"}, {"frame.glsl", "light.glsl", "ground_open.frag"}),
       visible_({"map.vert"}, {"frame.glsl", "light.glsl", "pattern.glsl", "ground_visible.frag"}),
       soft_({"map.vert"}, {"ground_soft.frag"}),
-      shown_({"frame.glsl", "ground.vert"}, {"frame.glsl", "light.glsl", "ground.frag"}),
-      quiet_({"frame.glsl", "ground.vert"}, {"frame.glsl", "ground_quiet.frag"}),
-      shown_fade_(shown_.uniform("fade")),
-      shown_extent_(shown_.uniform("extent")),
-      quiet_fade_(quiet_.uniform("fade")),
-      quiet_extent_(quiet_.uniform("extent")) {
+      shown_({"frame.glsl", "light.glsl", "ground.vert"}, {"ground.frag"},
+             fmt::format("#define GRID {}\n", cells)),
+      quiet_({"frame.glsl", "ground_quiet.vert"}, {"frame.glsl", "ground_quiet.frag"}) {
     // The map holds the scene's surroundings and the shadow of the sphere around it.
     const float radius = 0.5f * (scene.bounds_high - scene.bounds_low).norm();
     const Eigen::Array2f middle(centre_.x(), centre_.z());
@@ -77,6 +76,12 @@ Ground::Ground(const DrawScene& scene, float reach, int map_size)
         program->sampler("visible_map", first_unit);
         program->sampler("soft_map", first_unit + 1);
     }
+    shown_.use();
+    glUniform1f(shown_.uniform("reach"), reach_ * fade_end);
+    glUniform2f(shown_.uniform("fade"), reach_ * fade_begin, reach_ * fade_end);
+    quiet_.use();
+    glUniform1f(quiet_.uniform("extent"), quiet_end);
+    glUniform2f(quiet_.uniform("fade"), reach_ * quiet_begin, reach_ * quiet_end);
 
     // One large square: what lies behind the camera is clipped away.
     const float x = centre_.x(), z = centre_.z(), y = scene.ground_height;
@@ -85,6 +90,17 @@ Ground::Ground(const DrawScene& scene, float reach, int map_size)
     glBindVertexArray(square_);
     fill_buffer(GL_ARRAY_BUFFER, corners_, corners);
     float_attribute(0, 3, sizeof(Vec3f), 0);
+
+    std::vector<std::uint16_t> triangles;
+    for (int row = 0; row < cells; ++row)
+        for (int column = 0; column < cells; ++column) {
+            const auto a = static_cast<std::uint16_t>(row * (cells + 1) + column);
+            const auto b = static_cast<std::uint16_t>(a + 1), c = static_cast<std::uint16_t>(a + cells + 1),
+                       d = static_cast<std::uint16_t>(c + 1);
+            triangles.insert(triangles.end(), {a, b, c, c, b, d});
+        }
+    glBindVertexArray(grid_);
+    fill_buffer(GL_ELEMENT_ARRAY_BUFFER, cells_, triangles);
     glBindVertexArray(0);
 }
 
@@ -146,22 +162,19 @@ void Ground::draw_square() const {
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-void Ground::show(const GlProgram& program, GLint fade, GLint extent, float begin, float end) const {
-    program.use();
-    glUniform2f(fade, reach_ * begin, reach_ * end);
-    glUniform1f(extent, end);
-    draw_square();
-}
-
 void Ground::draw(DrawStyle style, const Vec3f& eye) const {
     if (!seen_from(eye)) return;
-    if (style == DrawStyle::components)
-        return show(quiet_, quiet_fade_, quiet_extent_, quiet_begin, quiet_end);
+    if (style == DrawStyle::components) {
+        quiet_.use();
+        return draw_square();
+    }
     glActiveTexture(GL_TEXTURE0 + first_unit);
     glBindTexture(GL_TEXTURE_2D, open_map_);
     glActiveTexture(GL_TEXTURE0 + first_unit + 1);
     glBindTexture(GL_TEXTURE_2D, soft_map_);
-    show(shown_, shown_fade_, shown_extent_, fade_begin, fade_end);
+    shown_.use();
+    glBindVertexArray(grid_);
+    glDrawElements(GL_TRIANGLES, 6 * cells * cells, GL_UNSIGNED_SHORT, nullptr);
 }
 
 void Ground::draw_depth(const Vec3f& eye) const {

@@ -24,13 +24,13 @@ public:
 
 private:
     static constexpr int open_size = 48;  ///< openness to the sky varies slowly
+    static constexpr int cells = 24;      ///< cells along a side of the ground as it is lit
     static constexpr int first_unit = 3;  ///< texture units before are the shadow maps'
     static constexpr float fade_begin = 0.2f, fade_end = 0.95f;  ///< of its reach
 
     bool seen_from(const Vec3f& eye) const { return scene_->show_ground && eye.y() > scene_->ground_height; }
     PixelRect shadow_rect(const DrawFrame& frame) const;
     void draw_square() const;
-    void show(const GlProgram& program, GLint fade, GLint extent, float begin, float end) const;
 
     const DrawScene* scene_;
     Vec3f key_, centre_;
@@ -38,11 +38,10 @@ private:
     Eigen::Array2f low_, extent_;  ///< x and z of the map's corner, and its size [m]
     int width_, height_;           ///< of the map [px]
     GlProgram open_, visible_, soft_, shown_, quiet_;
-    GLint shown_fade_, shown_extent_, quiet_fade_, quiet_extent_;
     GlTexture open_map_, visible_map_, soft_map_;
     GlFramebuffer open_target_, visible_target_, soft_target_;
-    GlVertexArray square_;
-    GlBuffer corners_;
+    GlVertexArray square_, grid_;
+    GlBuffer corners_, cells_;
 };
 
 }  // namespace unravel

@@ -12,6 +12,7 @@
 #include "render/frame_block.hpp"
 #include "render/framebuffer.hpp"
 #include "render/ground.hpp"
+#include "render/outlines.hpp"
 #include "render/readback.hpp"
 #include "render/shadow.hpp"
 #include "render/solid_renderer.hpp"
@@ -49,6 +50,11 @@ FrameBlock fixed_block(const DrawScene& scene, const ShadowMaps& shadows, float 
     return block;
 }
 
+/// Samples where none are asked: on the CPU each costs as much again as the first, and outlines are smoothed.
+int samples_for(const GlContext& context, const RenderSettings& asked) {
+    return asked.samples > 0 ? asked.samples : context.software() ? 1 : 4;
+}
+
 }  // namespace
 
 struct Renderer::Parts {
@@ -65,6 +71,7 @@ struct Renderer::Parts {
     ClothRenderer cloths;
     WireRenderer wires;
     Ground ground;
+    Outlines outlines;
     GlProgram depth{{"depth.vert"}, {"depth.frag"}};
     GlProgram surface{{"frame.glsl", "yield.glsl", "surface.vert"}, {"frame.glsl", "surface.frag"}};
     GlProgram sheet{{"frame.glsl", "color.glsl", "sheet.vert"}, {"sheet.frag"}};
@@ -79,16 +86,18 @@ struct Renderer::Parts {
         : scene(&draw_scene),
           settings(asked),
           renderer(context.renderer()),
-          framebuffer(context, {asked.width, asked.height, asked.samples, asked.supersample, asked.exposures,
-                                draw_scene.transparent, true}),
-          wire_framebuffer(context, {asked.width, asked.height, context.software() ? 1 : asked.samples,
-                                     asked.supersample, asked.exposures, draw_scene.transparent, false}),
+          framebuffer(context, {asked.width, asked.height, samples_for(context, asked), asked.supersample,
+                                asked.exposures, draw_scene.transparent, true, asked.samples == 0}),
+          wire_framebuffer(context,
+                           {asked.width, asked.height, context.software() ? 1 : samples_for(context, asked),
+                            asked.supersample, asked.exposures, draw_scene.transparent, false, false}),
           readback(asked.width, asked.height),
           solids(draw_scene),
           shadows(draw_scene, context.software() ? 1024 : 2048),
           cloths(draw_scene, context.software()),
           wires(draw_scene),
           ground(draw_scene, solids.reach(), context.software() ? 512 : 1024),
+          outlines(draw_scene),
           block(fixed_block(draw_scene, shadows, solids.reach())) {
         allocate_buffer(GL_UNIFORM_BUFFER, block_buffer, sizeof(FrameBlock));
         edges = draw_scene.edges.size();
@@ -101,15 +110,15 @@ struct Renderer::Parts {
     void draw_textured(DrawStyle style, const DrawFrame& frame, int exposure, int exposures);
     void draw_components(const DrawFrame& frame, int exposure, int exposures);
     float wire_gap(const DrawFrame& frame) const;
-    const Framebuffer& target(DrawStyle style) const {
+    Framebuffer& target(DrawStyle style) {
         return style == DrawStyle::components ? wire_framebuffer : framebuffer;
     }
     Rgb background(DrawStyle style) const {
         return style == DrawStyle::components ? scene->components_background : scene->background;
     }
-    void draw_backdrop(DrawStyle style, const DrawFrame& frame) const;
+    void draw_backdrop(DrawStyle style, const DrawFrame& frame);
     bool below_ground(const DrawFrame& frame) const;
-    PixelRect begin_shapes(DrawStyle style, const DrawFrame& frame) const;
+    PixelRect begin_shapes(DrawStyle style, const DrawFrame& frame);
     int height() const { return framebuffer.height() * framebuffer.supersample(); }
 };
 
@@ -144,7 +153,7 @@ void Renderer::Parts::update_block(DrawStyle style, const CameraView& view) {
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, block_buffer);
 }
 
-void Renderer::Parts::draw_backdrop(DrawStyle style, const DrawFrame& frame) const {
+void Renderer::Parts::draw_backdrop(DrawStyle style, const DrawFrame& frame) {
     target(style).begin_backdrop();
     const Vec3f c = scene->transparent ? Vec3f(0, 0, 0) : linear(background(style));
     glClearColor(c.x(), c.y(), c.z(), scene->transparent ? 0 : 1);
@@ -160,7 +169,7 @@ bool Renderer::Parts::below_ground(const DrawFrame& frame) const {
 }
 
 /// Opens the layer where shapes will be, and puts the ground's depth there; tells where.
-PixelRect Renderer::Parts::begin_shapes(DrawStyle style, const DrawFrame& frame) const {
+PixelRect Renderer::Parts::begin_shapes(DrawStyle style, const DrawFrame& frame) {
     // Wires and dots are drawn around their particles.
     const int margin = static_cast<int>(2 * WireRenderer::line_width(height())) + 2;
     const PixelRect rect =
@@ -200,11 +209,15 @@ void Renderer::Parts::draw_textured(DrawStyle style, const DrawFrame& frame, int
     const PixelRect rect = begin_shapes(style, frame);
     if (!rect.empty()) {
         shadows.bind();
-        cloths.draw_fabric();
+        cloths.draw_fabric(block.viewport.z());
         solids.draw_shaded(frame);
         if (style == DrawStyle::overlay) {
             wires.update(frame);
             wires.draw(height(), wire_gap(frame), true);
+        }
+        if (framebuffer.smooths_outlines()) {
+            outlines.update(frame);
+            outlines.draw(framebuffer);
         }
     }
     framebuffer.finish(rect, exposure, exposures);
@@ -274,10 +287,12 @@ void Renderer::draw(DrawStyle style, const DrawFrame& frame, Image& out) {
 
 std::string Renderer::description() const {
     const Framebuffer& framebuffer = parts_->framebuffer;
-    std::string text = fmt::format("{}, {}×{}, {} samples", parts_->renderer, framebuffer.width(),
-                                   framebuffer.height(), framebuffer.samples());
-    if (framebuffer.samples() != parts_->settings.samples)
-        text += fmt::format(" ({} asked; this renderer has no more)", parts_->settings.samples);
+    const int asked = parts_->settings.samples;
+    std::string text =
+        fmt::format("{}, {}×{}, ", parts_->renderer, framebuffer.width(), framebuffer.height());
+    text +=
+        framebuffer.smooths_outlines() ? "smooth outlines" : fmt::format("{} samples", framebuffer.samples());
+    if (asked > framebuffer.samples()) text += fmt::format(" ({} asked; this renderer has no more)", asked);
     if (framebuffer.supersample() > 1)
         text += fmt::format(", supersampled {0}×{0}", framebuffer.supersample());
     return text;

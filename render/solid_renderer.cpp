@@ -1,5 +1,7 @@
 #include "render/solid_renderer.hpp"
 
+#include <fmt/format.h>
+
 #include "render/color.hpp"
 #include "render/shadow.hpp"
 
@@ -12,18 +14,23 @@ constexpr float quiet_ground = 0.3f;
 
 }  // namespace
 
+SolidRenderer::Shaded::Shaded(bool fades)
+    : program({"frame.glsl", "light.glsl", "sky.glsl", "yield.glsl", "solid.vert"},
+              {"frame.glsl", "light.glsl", "pattern.glsl", "solid.frag"},
+              fmt::format("#define FADES {}\n", fades ? 1 : 0)),
+      model(program.uniform("model")),
+      albedo(program.uniform("albedo")),
+      gloss(program.uniform("gloss")),
+      fade_centre(program.uniform("fade_centre")) {
+    ShadowMaps::connect(program);
+}
+
 SolidRenderer::SolidRenderer(const DrawScene& scene)
     : scene_(&scene),
       centre_(0.5f * (scene.bounds_low + scene.bounds_high)),
       reach_(2.5f * (scene.bounds_high - scene.bounds_low).norm()),
-      shaded_({"frame.glsl", "light.glsl", "sky.glsl", "yield.glsl", "solid.vert"},
-              {"frame.glsl", "light.glsl", "pattern.glsl", "solid.frag"}),
-      model_(shaded_.uniform("model")),
-      albedo_(shaded_.uniform("albedo")),
-      gloss_(shaded_.uniform("gloss")),
-      fades_(shaded_.uniform("fades")),
-      fade_centre_(shaded_.uniform("fade_centre")) {
-    ShadowMaps::connect(shaded_);
+      shaded_(false),
+      fading_(true) {
     for (std::size_t i = 0; i < scene.solids.size(); ++i) {
         const SolidMesh& solid = scene.solids[i];
         if (solid.shape != SolidShape::plane)
@@ -105,15 +112,15 @@ void SolidRenderer::draw_shapes(const DrawFrame& frame, GLint transform_uniform,
 void SolidRenderer::draw_shaded(const DrawFrame& frame) const {
     glEnable(GL_CULL_FACE);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    shaded_.use();
     for (const Part& part : parts_) {
         const Eigen::Matrix4f matrix = pose(part, frame);
         const Vec3f middle = matrix.block<3, 1>(0, 3);
-        glUniformMatrix4fv(model_, 1, GL_FALSE, matrix.data());
-        glUniform3fv(albedo_, 1, part.albedo.data());
-        glUniform1f(gloss_, part.fades ? 0.15f : 1.f);
-        glUniform1i(fades_, part.fades);
-        glUniform3fv(fade_centre_, 1, middle.data());
+        const Shaded& shaded = part.fades ? fading_ : shaded_;
+        shaded.program.use();
+        glUniformMatrix4fv(shaded.model, 1, GL_FALSE, matrix.data());
+        glUniform3fv(shaded.albedo, 1, part.albedo.data());
+        glUniform1f(shaded.gloss, part.fades ? 0.15f : 1.f);
+        glUniform3fv(shaded.fade_centre, 1, middle.data());
         if (part.fades) glEnable(GL_BLEND);
         part.fine.draw();
     }

@@ -53,8 +53,14 @@ private:
     Vec3f centre_;
     float reach_;
     std::vector<Part> parts_;
-    GlProgram shaded_;
-    GLint model_, albedo_, gloss_, fades_, fade_centre_;
+    // Solids' program, and the one of planes, which fade.
+    struct Shaded {
+        GlProgram program;
+        GLint model, albedo, gloss, fade_centre;
+
+        explicit Shaded(bool fades);
+    };
+    Shaded shaded_, fading_;
 };
 
 }  // namespace unravel

@@ -31,8 +31,14 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Throws VideoError if no video can have this ending, size or frame rate. To be asked before any frame is
-/// computed.
+/// A size, a frame rate or an ending that no video can have, whatever encoders there are.
+class VideoSettingsError : public VideoError {
+public:
+    using VideoError::VideoError;
+};
+
+/// Throws VideoSettingsError if no video can have this ending, size or frame rate, VideoError if no encoder
+/// opens. To be asked before any frame is computed.
 void check_video_settings(const std::filesystem::path& file, const VideoSettings& settings);
 
 /// Writes a video of constant frame rate: the k-th image added is shown at exactly k fps_den / fps_num

@@ -113,7 +113,8 @@ const Container& container_for(const std::filesystem::path& file) {
                    [](unsigned char c) { return std::tolower(c); });
     for (const Container& container : containers)
         if (ending == container.ending) return container;
-    throw VideoError(fmt::format("{}: a video's name ends in .mp4, .webm, .mkv or .gif", file.string()));
+    throw VideoSettingsError(
+        fmt::format("{}: a video's name ends in .mp4, .webm, .mkv or .gif", file.string()));
 }
 
 std::vector<const EncoderEntry*> encoders_for(const Container& container) {

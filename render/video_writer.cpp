@@ -21,22 +21,22 @@ void require(int result, const std::filesystem::path& file, const av::LogCapture
 void check_video_settings(const std::filesystem::path& file, const VideoSettings& s) {
     const av::Container& container = av::container_for(file);
     if (s.width % 2 != 0 || s.height % 2 != 0)
-        throw VideoError(
+        throw VideoSettingsError(
             fmt::format("a video of {} × {} pixels can't be made: width and height must be even, since "
                         "colour is stored for blocks of 2 × 2",
                         s.width, s.height));
     if (s.width < 16 || s.height < 16 || s.width > 16384 || s.height > 16384)
-        throw VideoError(fmt::format("a video of {} × {} pixels can't be made: each side must be 16 to 16384",
-                                     s.width, s.height));
+        throw VideoSettingsError(fmt::format(
+            "a video of {} × {} pixels can't be made: each side must be 16 to 16384", s.width, s.height));
     if (s.fps_num < 1 || s.fps_den < 1 || s.fps_num > 1000 * static_cast<long long>(s.fps_den))
-        throw VideoError(fmt::format("{}/{} frames a second can't be made: above 0 and at most 1000",
-                                     s.fps_num, s.fps_den));
+        throw VideoSettingsError(fmt::format("{}/{} frames a second can't be made: above 0 and at most 1000",
+                                             s.fps_num, s.fps_den));
     // Its clock counts hundredths, and players slow a frame of one hundredth down to ten.
     if (std::string_view(container.muxer) == "gif" && s.fps_num > 50 * static_cast<long long>(s.fps_den))
-        throw VideoError("a GIF shows at most 50 frames a second: lower fps or choose .mp4");
+        throw VideoSettingsError("a GIF shows at most 50 frames a second: lower fps or choose .mp4");
     if (s.alpha && std::string_view(container.muxer) != "matroska")
-        throw VideoError("only .mkv keeps transparency here: choose it, or pictures without a video");
-    if (s.threads < 1 || s.threads > 64) throw VideoError("the encoder's threads must be 1 to 64");
+        throw VideoSettingsError("only .mkv keeps transparency here: choose it, or pictures without a video");
+    if (s.threads < 1 || s.threads > 64) throw VideoSettingsError("the encoder's threads must be 1 to 64");
     // Opened for a moment: one that is not to be had is found out before anything is computed.
     av::choose_encoder(container, s);
 }

@@ -7,8 +7,10 @@ uniform vec2 picture_scale;  // 1/m
 #endif
 in vec2 cloth_uv;
 #if LIGHT_AT_VERTICES
-in vec3 diffuse;
-in vec3 sheen;
+in vec3 diffuse_front;
+in vec3 sheen_front;
+in vec3 diffuse_back;
+in vec3 sheen_back;
 #else
 in vec3 world;
 in vec3 world_normal;
@@ -36,12 +38,15 @@ void main() {
     if (gl_FrontFacing) cloth.albedo = texture(picture, cloth_uv * picture_scale).rgb;
 #endif
 #if LIGHT_AT_VERTICES
-    FabricLight light = FabricLight(diffuse, sheen);
+    FabricLight light =
+        gl_FrontFacing ? FabricLight(diffuse_front, sheen_front) : FabricLight(diffuse_back, sheen_back);
 #else
     vec3 v = normalize(eye.xyz - world);
     vec3 n = seen_normal(normalize(world_normal) * (gl_FrontFacing ? 1.0 : -1.0), v);
-    FabricLight light = fabric_light(world, n, tilted(n, cloth.tilt), v, mean_albedo[gl_FrontFacing ? 0 : 1],
-                                     gl_FrontFacing ? openness.x : openness.y, pattern_turn());
+    float visible =
+        key_visibility(world, dot(n, key_direction.xyz) >= 0.0 ? n : -n, pattern_turn(), true);
+    FabricLight light = fabric_light(n, tilted(n, cloth.tilt), v, mean_albedo[gl_FrontFacing ? 0 : 1],
+                                     gl_FrontFacing ? openness.x : openness.y, visible);
 #endif
     color = vec4(sqrt(tone(cloth.albedo * light.diffuse + light.sheen)), 1.0);  // the layer holds roots
 }

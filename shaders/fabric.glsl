@@ -22,14 +22,14 @@ vec3 seen_normal(vec3 n, vec3 v) { return normalize(n + v * max(0.0, 0.04 - dot(
 
 //   smooth_n  of the surface; n: of its threads; both on the seen side
 //   open      share of the sky
-//   turn      of the shadow's lookups
-FabricLight fabric_light(vec3 p, vec3 smooth_n, vec3 n, vec3 v, vec3 mean, float open, float turn) {
+//   visible   share of the key light that reaches this place, on whichever side faces it
+FabricLight fabric_light(vec3 smooth_n, vec3 n, vec3 v, vec3 mean, float open, float visible) {
     vec3 l = key_direction.xyz;
     float nv = clamp(dot(n, v), 0.02, 1.0), nl = dot(n, l), surface_nl = dot(smooth_n, l);
     vec3 fibres = mix(vec3(0.04), sqrt(mean), 0.35);
 
     // Light falls on this side, or comes through from the other one.
-    vec3 key = key_color.rgb * key_visibility(p, surface_nl >= 0.0 ? smooth_n : -smooth_n, turn);
+    vec3 key = key_color.rgb * visible;
     // The wrap may not carry light past where the surface itself turns its back on the lamp.
     float diffuse = clamp((nl + wrap) / ((1.0 + wrap) * (1.0 + wrap)), 0.0, 1.0) * smoothstep(-0.12, 0.18, surface_nl);
     float nh = clamp(dot(n, normalize(l + v)), 0.0, 1.0), lit = max(nl, 0.0);

@@ -4,6 +4,7 @@ uniform sampler2DMS layer;
 #else
 uniform sampler2D layer;
 #endif
+uniform ivec2 corner;  // of the layer in the picture
 out vec4 color;
 
 // Linear light of a sample.
@@ -15,7 +16,7 @@ vec4 light(vec4 stored) {
 }
 
 void main() {
-    ivec2 at = ivec2(gl_FragCoord.xy);
+    ivec2 at = ivec2(gl_FragCoord.xy) - corner;
 #if SAMPLES > 1
     vec4 sum = vec4(0.0);
     for (int i = 0; i < SAMPLES; ++i) sum += light(texelFetch(layer, at, i));

@@ -17,8 +17,8 @@ float soft_visibility(sampler2D depths, vec3 at, ivec4 tile, float source, float
                       int taps) {
     // Nothing casts from beyond the map's sides; beyond its far end there are only receivers.
     bool inside = all(greaterThan(at.xy, vec2(0.0))) && all(lessThan(at.xy, vec2(1.0)));
-    // Loops that need no lookup get a length of none: measured on llvmpipe, which spends on a branch that no pixel of
-    // a block takes as much as on one that all take, but leaves a loop at once.
+    // Loops that need no lookup get a length of none: llvmpipe spends on a branch that no pixel of a block takes as
+    // much as on one that all take, but leaves a loop after its first round.
     if (!inside) searches = 0;
     const mat2 golden = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);
     vec2 spoke = vec2(cos(turn), sin(turn));
@@ -47,11 +47,13 @@ float soft_visibility(sampler2D depths, vec3 at, ivec4 tile, float source, float
     return rim ? lit / float(taps) : count == 0.0 ? 1.0 : 0.0;
 }
 
-// Share of the key light that reaches p, whose surface faces the light along n (dot(n, l) > 0).
-float key_visibility(vec3 p, vec3 n, float turn) {
+// Share of the key light that reaches p, whose surface faces the light along n (dot(n, l) > 0). Where it is not
+// `needed` the answer costs less and means nothing.
+float key_visibility(vec3 p, vec3 n, float turn, bool needed) {
     float away = 1.0 - dot(n, key_direction.xyz);
     vec3 at = (shadow_matrix * vec4(p + n * shadow.x * (0.8 + 2.0 * away), 1.0)).xyz;
-    return soft_visibility(shadow_depth, at, ivec4(ivec2(0), textureSize(shadow_depth, 0)), key_direction.w, 0.5, turn, 6, 12);
+    return soft_visibility(shadow_depth, at, ivec4(ivec2(0), textureSize(shadow_depth, 0)), key_direction.w, 0.5, turn,
+                           needed ? 6 : 0, 12);
 }
 
 // Light from all around at normal n, as if nothing stood in the way.

@@ -1,7 +1,6 @@
-// Solids: matt, with a broad highlight; planes fade away with distance.
+// Solids: matt, with a broad highlight. FADES: planes, which fade away with distance.
 uniform vec3 albedo;
 uniform float gloss;   // strength of the highlight
-uniform bool fades;
 uniform vec3 fade_centre;
 in vec3 world;
 in vec3 world_normal;
@@ -9,17 +8,19 @@ in float openness;
 out vec4 color;
 
 void main() {
-    float fade = fades ? smoothstep(ground.z, ground.w, distance(world, fade_centre)) : 0.0;
     vec3 n = normalize(world_normal), v = normalize(eye.xyz - world), l = key_direction.xyz;
-    float nl = dot(n, l);
+    float nl = max(dot(n, l), 0.0), nh = clamp(dot(n, normalize(l + v)), 0.0, 1.0);
     vec3 result = albedo * ambient_light(n) * openness;
     result += albedo * fill_color.rgb * (max(0.0, 0.3 + 0.7 * dot(n, fill_direction.xyz)) * openness);
-    if (nl > 0.0) {
-        float nh = clamp(dot(n, normalize(l + v)), 0.0, 1.0);
-        // Normalised Blinn–Phong of exponent 24, dimmed to a dielectric's 4% and rising at grazing angles.
-        float grazing = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 5.0);
-        float highlight = gloss * (0.04 + 0.5 * grazing) * (26.0 / 8.0) * pow(nh, 24.0);
-        result += (albedo + highlight) * key_color.rgb * (nl * key_visibility(world, n, pattern_turn()));
-    }
+    // Normalised Blinn–Phong of exponent 24, dimmed to a dielectric's 4% and rising at grazing angles.
+    float away = 1.0 - clamp(dot(n, v), 0.0, 1.0), away2 = away * away, nh2 = nh * nh, nh8 = nh2 * nh2 * nh2 * nh2;
+    float highlight = gloss * (0.04 + 0.5 * away2 * away2 * away) * (26.0 / 8.0) * (nh8 * nh8 * nh8);
+    float key = nl * key_visibility(world, n, pattern_turn(), nl > 0.0);
+    result += (albedo + highlight) * key_color.rgb * key;
+#if FADES
+    float fade = smoothstep(ground.z, ground.w, distance(world, fade_centre));
+#else
+    const float fade = 0.0;
+#endif
     color = vec4(sqrt(tone(result) * (1.0 - fade)), 1.0 - fade);  // the layer holds roots
 }

@@ -20,7 +20,7 @@ struct ClipOptions {
     std::vector<ClipView> views{{Layout::textured, 0, "textured"}, {Layout::components, 0, "components"}};
     DeviceChoice device;
     std::filesystem::path textures;  ///< folder that the scene's pictures are named relative to
-    int samples = 4;
+    int samples = 0;                 ///< see RenderSettings
     int supersample = 1;
     int first = 0;  ///< frames drawn: first … last
     int last = 0;

@@ -39,6 +39,10 @@ int guarded(const std::function<int()>& command) {
         return failed(error, exit_usage);
     } catch (const FolderError& error) {
         return failed(error, exit_usage);
+    } catch (const DeviceChoiceError& error) {
+        return failed(error, exit_usage);
+    } catch (const VideoSettingsError& error) {
+        return failed(error, exit_usage);
     } catch (const RendererError& error) {
         return failed(error, exit_no_renderer);
     } catch (const VideoError& error) {

@@ -53,8 +53,11 @@ void add_picture_options(CLI::App& command, Options& o) {
                        "the scene's cameras by name, with commas between, or all (default: the first)");
     command.add_option("--device", o.device, "auto, gpu, software or the number of an EGL device")
         ->capture_default_str();
-    command.add_option("--samples", o.samples, "per pixel, clamped to what the renderer offers")
-        ->capture_default_str();
+    command
+        .add_option("--samples", o.samples,
+                    "per pixel, clamped to what the renderer offers (default: 4; on the CPU outlines are "
+                    "smoothed instead)")
+        ->check(CLI::Range(1, 64));
     command.add_option("--supersample", o.supersample, "draw this many times larger and average")
         ->check(CLI::Range(1, 4));
     command
@@ -161,7 +164,7 @@ int main(int argc, char** argv) {
     sheet->add_option("--camera", options.camera, "one of the scene's cameras (default: the first)");
     sheet->add_option("--show", options.show, "what the colours of the component view tell")
         ->check(CLI::IsMember({"components", "splitting", "strain", "velocity", "contact"}));
-    sheet->add_option("--samples", options.samples, "per pixel")->capture_default_str();
+    sheet->add_option("--samples", options.samples, "per pixel")->check(CLI::Range(1, 64));
     sheet->add_option("--supersample", options.supersample, "draw this many times larger and average")
         ->check(CLI::Range(1, 4));
     sheet->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")

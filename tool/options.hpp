@@ -52,7 +52,7 @@ struct Options {
     double turntable = 0;                 ///< s of one turn about a frame that stands still; 0: none
     std::string codec, preset;
     int crf = -1;
-    int samples = 4, supersample = 1;
+    int samples = 0, supersample = 1;
     bool pictures = true;
     double budget = 10;                       ///< --budget, minutes
     double error = 1e-3;                      ///< --error, of the cloth's diagonal

@@ -32,6 +32,21 @@ VideoSettings video_settings(const Scene& scene, const ClipOptions& options, Lay
     return settings;
 }
 
+DrawingRoom::DrawingRoom(const DrawScene& scene, const DeviceChoice& device, const RenderSettings& settings) {
+    thread_.run([&] {
+        auto context = std::make_unique<GlContext>(device);
+        renderer_ = std::make_unique<Renderer>(*context, scene, settings);
+        context_ = std::move(context);
+    });
+}
+
+DrawingRoom::~DrawingRoom() {
+    thread_.run([&] {
+        renderer_.reset();
+        context_.reset();
+    });
+}
+
 Studio::Studio(const Scene& scene, const ClothModel& model, const Placement& placement,
                const RunFolder& folder, const ClipOptions& options)
     : scene_(scene),
@@ -39,15 +54,12 @@ Studio::Studio(const Scene& scene, const ClothModel& model, const Placement& pla
       folder_(folder),
       options_(options),
       edges_(drawn_edges(model)),
-      drawn_(make_draw_scene(scene, model, placement, options.textures)) {
+      drawn_(make_draw_scene(scene, model, placement, options.textures)),
+      room_(drawn_, options.device, render_settings(scene, options)) {
     plan_shots();
-    thread_.run([&] {
-        context_ = std::make_unique<GlContext>(options.device);
-        renderer_ = std::make_unique<Renderer>(*context_, drawn_, render_settings(scene, options));
-    });
-    report_.renderer = renderer_->description();
-    report_.renderer_summary = context_->summary();
-    report_.software = context_->software();
+    report_.renderer = room_.renderer().description();
+    report_.renderer_summary = room_.context().summary();
+    report_.software = room_.context().software();
     if (scene.look.legend) legend_ = std::make_unique<Legend>(scene, scene.clip.size[1]);
     for (Passage& passage : passages_) {
         passage.pictures.resize(options.views.size());
@@ -62,13 +74,6 @@ Studio::Studio(const Scene& scene, const ClothModel& model, const Placement& pla
         report_.encoders.push_back(videos_.back()->description());
         report_.videos.push_back(file.filename().string());
     }
-}
-
-Studio::~Studio() {
-    thread_.run([&] {
-        renderer_.reset();
-        context_.reset();
-    });
 }
 
 void Studio::plan_shots() {
@@ -147,13 +152,13 @@ void Studio::draw_shot(Passage& passage, std::size_t shot) {
         passage.exposures[e].camera = camera_at(scene_, camera, t);
     }
     Image& image = image_of(passage, shot);
-    renderer_->submit(shots_[shot].style, passage.exposures);
-    renderer_->collect(image);
+    room_.renderer().submit(shots_[shot].style, passage.exposures);
+    room_.renderer().collect(image);
     if (legend_ && shots_[shot].style != DrawStyle::textured) legend_->add(passage.record, image);
 }
 
 void Studio::draw(Passage& passage) {
-    thread_.run([&] {
+    room_.run([&] {
         StageTimer timer;
         std::vector<char> wanted(shots_.size(), 0);
         for (std::size_t v = 0; v < options_.views.size(); ++v) {
@@ -194,7 +199,7 @@ void Studio::write(Passage& passage) {
             taken_over[v] = 1;
             passage.pictures[v] = std::move(there);
         } else {
-            thread_.run([&] {
+            room_.run([&] {
                 for (const std::size_t shot : view_shots_[v]) draw_shot(passage, shot);
             });
         }

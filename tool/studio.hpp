@@ -3,6 +3,7 @@
 #include <tbb/concurrent_queue.h>
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -26,13 +27,32 @@ struct Passage {
     std::vector<Image> parts;     ///< (shots) drawn for a view of several, where no view is that shot alone
 };
 
+/// Context and renderer, made, used and destroyed on the thread that owns them.
+class DrawingRoom {
+public:
+    /// `scene` must outlive the room. Throws RendererError.
+    DrawingRoom(const DrawScene& scene, const DeviceChoice& device, const RenderSettings& settings);
+    ~DrawingRoom();
+    DrawingRoom(const DrawingRoom&) = delete;
+    DrawingRoom& operator=(const DrawingRoom&) = delete;
+
+    /// Does `work` on the thread and waits for it; what it throws is thrown here.
+    void run(std::function<void()> work) { thread_.run(std::move(work)); }
+    const GlContext& context() const { return *context_; }
+    Renderer& renderer() { return *renderer_; }
+
+private:
+    RenderThread thread_;
+    std::unique_ptr<GlContext> context_;
+    std::unique_ptr<Renderer> renderer_;
+};
+
 /// Everything between a frame record and its files: the stages of make_clip()'s pipeline. Stages of one frame
 /// follow each other; each stage but write() works on one frame at a time.
 class Studio {
 public:
     Studio(const Scene& scene, const ClothModel& model, const Placement& placement, const RunFolder& folder,
            const ClipOptions& options);
-    ~Studio();
     Studio(const Studio&) = delete;
     Studio& operator=(const Studio&) = delete;
 
@@ -66,10 +86,8 @@ private:
     ClothState previous_;  // of the frame before, where pictures are blurred by motion
     bool has_previous_ = false;
     DrawScene drawn_;
-    RenderThread thread_;
-    std::unique_ptr<GlContext> context_;  // made and destroyed on thread_
-    std::unique_ptr<Renderer> renderer_;  // likewise
-    std::unique_ptr<Legend> legend_;      // used on thread_
+    DrawingRoom room_;
+    std::unique_ptr<Legend> legend_;  // used on the room's thread
     std::vector<std::unique_ptr<VideoWriter>> videos_;
     std::array<Passage, frames_under_way> passages_;
     tbb::concurrent_bounded_queue<Passage*> free_;

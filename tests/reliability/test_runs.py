@@ -25,7 +25,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 SCENE = HERE / "tiny.toml"
 TOOL = ""
 FRAMES = 15  # of tiny.toml
-DONE, USAGE, SCENE_ERROR, SIMULATION, OUTPUT, INTERRUPTED = 0, 2, 3, 5, 6, 130
+DONE, USAGE, SCENE_ERROR, NO_ENCODER, SIMULATION, OUTPUT, INTERRUPTED = 0, 2, 3, 4, 5, 6, 130
 PATIENCE = 120  # s, for anything that waits; only ever reached where something hangs
 
 
@@ -326,6 +326,14 @@ COMMAND_LINES = [
     (["run", "{scene}", "--frames", "9-2"], USAGE, "--frames"),
     (["run", "{scene}", "--frames", "0-99999999999999999999"], USAGE, "--frames"),
     (["run", "{scene}", "--size", "big"], USAGE, "--size"),
+    (["run", "{scene}", "--size", "1x1"], USAGE, "1 × 1"),
+    (["run", "{scene}", "--size", "65x64"], USAGE, "even"),
+    (["run", "{scene}", "--video", "avi"], USAGE, "avi"),
+    (["run", "{scene}", "--video", "mp4", "--transparent"], USAGE, ".mkv"),
+    (["run", "{scene}", "--codec", "nosuch"], NO_ENCODER, "nosuch"),
+    (["run", "{scene}", "--samples", "-1"], USAGE, "--samples"),
+    (["run", "{scene}", "--device", "moon"], USAGE, "moon"),
+    (["run", "{scene}", "--device", "99"], NO_ENCODER, "99"),
     (["run", "{scene}", "--style", "neon"], USAGE, "--style"),
     (["run", "{scene}", "--camera", "nobody"], USAGE, "--camera"),
     (["run", "{scene}", "--crf", "99"], USAGE, "--crf"),

@@ -345,3 +345,87 @@ TEST_CASE("GL_the_overlay_is_the_textured_view_with_wires_on_it") {
     CHECK(changed > 1000);
     CHECK(changed < 20000);
 }
+
+TEST_CASE("GL_smooth_outlines_come_as_near_to_the_finest_picture_as_samples_do") {
+    const auto context = testing::open_renderer();
+    if (!context) return;
+    // Nothing but outlines: one colour, no shadows on a ground.
+    testing::Sheet sheet(51);
+    sheet.scene.show_ground = false;
+    sheet.scene.cloths[0].appearance.weave = WeavePattern::solid;
+    const auto drawn = [&](int samples, int supersample) {
+        Renderer renderer(*context, sheet.scene,
+                          {.width = 320, .height = 180, .samples = samples, .supersample = supersample});
+        Image image;
+        renderer.draw(DrawStyle::textured, sheet.frame, image);
+        return image;
+    };
+    const Image finest = drawn(4, 4);
+    const auto error = [&](const Image& image) {
+        double sum = 0;
+        for (std::size_t k = 0; k < image.pixels.size(); ++k)
+            sum += std::pow(image.pixels[k] - finest.pixels[k], 2);
+        return sum;
+    };
+    const double smooth = error(drawn(0, 1)), bare = error(drawn(1, 1)), samples = error(drawn(4, 1));
+    INFO("squares off by " << smooth << "; one sample " << bare << ", four " << samples);
+    CHECK(smooth < 0.5 * bare);
+    CHECK(smooth < 1.5 * samples);
+}
+
+TEST_CASE("GL_a_layer_that_has_grown_draws_what_a_fresh_one_draws") {
+    const auto context = testing::open_renderer();
+    if (!context) return;
+    testing::Sheet sheet(31);
+    Renderer grown(*context, sheet.scene, {.width = 640, .height = 360}),
+        fresh(*context, sheet.scene, {.width = 640, .height = 360});
+    DrawFrame close = sheet.frame;
+    close.camera.fov = 12;  // fills the picture
+    Image a, b;
+    for (const DrawStyle style : {DrawStyle::textured, DrawStyle::components, DrawStyle::overlay}) {
+        grown.draw(style, close, a);
+        grown.draw(style, sheet.frame, a);
+        fresh.draw(style, sheet.frame, b);
+        CHECK(a.pixels == b.pixels);
+    }
+}
+
+TEST_CASE("GL_a_ridge_wears_the_light_of_the_side_that_is_seen") {
+    const auto context = testing::open_renderer();
+    if (!context) return;
+    // A roof whose ridge is seen nearly along one of its slopes. Its front is white and its back black; the
+    // ridge's normals may point away from the viewer, but nothing black is seen.
+    const int n = 121;  // fine enough for light at vertices
+    DrawScene scene = empty_scene({128, 128, 128});
+    ClothMesh mesh;
+    mesh.appearance.weave = WeavePattern::solid;
+    mesh.appearance.front = {240, 240, 240};
+    mesh.appearance.back = {10, 10, 10};
+    scene.spacing = 1.f / (n - 1);
+    DrawFrame frame;
+    for (int v = 0; v < n; ++v)
+        for (int u = 0; u < n; ++u) {
+            const float x = float(u) / (n - 1) - 0.5f, z = float(v) / (n - 1) - 0.5f;
+            mesh.particle.push_back(v * n + u);
+            mesh.uv.push_back({x + 0.5f, z + 0.5f});
+            frame.positions.push_back({x, -0.9f * std::abs(z), z});
+        }
+    for (int v = 0; v + 1 < n; ++v)
+        for (int u = 0; u + 1 < n; ++u) {
+            const auto a = static_cast<std::uint32_t>(v * n + u), b = a + 1, c = a + n, d = c + 1;
+            mesh.triangles.push_back({a, c, d});
+            mesh.triangles.push_back({a, d, b});
+        }
+    scene.cloths.push_back(mesh);
+    scene.bounds_low = {-0.5f, -0.5f, -0.5f};
+    scene.bounds_high = {0.5f, 0.1f, 0.5f};
+    scene.key_direction = {0, 1, 0.2f};
+    frame.camera = {.position = {0, 0.3f, 3}, .target = {0, -0.2f, 0}, .up = {0, 1, 0}, .fov = 24};
+    Renderer renderer(*context, scene, {.width = 320, .height = 180});
+    Image image;
+    renderer.draw(DrawStyle::textured, frame, image);
+    int darkest = 255;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) darkest = std::min<int>(darkest, image.at(x, y)[1]);
+    CHECK(darkest > 100);
+}

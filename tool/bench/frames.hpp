@@ -22,7 +22,9 @@ struct FrameBench {
     int frames = 0, processors = 0;
     std::vector<FrameStage> stages;  ///< each alone, over all frames, before the next begins
     FrameStage together;             ///< all of them as `unravel run` does it
-    /// No pipeline is faster: its slowest stage, or all processors busy with what all stages take.
+    double others = 0;               ///< processors that other programs kept busy meanwhile
+    /// No pipeline is faster: its slowest stage, or all processors that were to be had busy with what all
+    /// stages take.
     double bound() const;  ///< ms per frame
 };
 
