@@ -74,7 +74,6 @@ ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
     const bool swept = is_swept(options.preconditioner);
     ComponentSolve result;
 
-    const double target = options.tolerance * options.tolerance * rows.measure(A.b);
     // The constraint force that A x − b holds outside the free directions is no residual. P would take it
     // away, but to rounding only, and what is left outgrows a residual that has become small: so it never
     // gets in.
@@ -82,6 +81,12 @@ ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
     const auto filter = [&](std::uint32_t row) {
         if (constraint[row]) r[row] = constraint[row]->S * r[row];
     };
+    // Nor is it a right-hand side: P would take it away from b to rounding only, which may be below zero.
+    rows.each([&](std::uint32_t row) {
+        r[row] = A.b[row];
+        filter(row);
+    });
+    const double target = options.tolerance * options.tolerance * rows.measure(r);
     rows.each([&](std::uint32_t row) {
         r[row] = A.b[row] - row_times(A, row, x);
         filter(row);

@@ -161,6 +161,25 @@ TEST_CASE("the decomposed solve matches the whole-system solve and needs no more
     }
 }
 
+TEST_CASE("what acts along constrained directions alone is no right-hand side: the solution is found at once") {
+    Problem problem(60, 0.1, 0.1, 0.6, 11);
+    const std::span<const Constraint> all = problem.constraints.all();
+    std::vector<Constraint> at_rest(all.begin(), all.end());
+    problem.constraints.reset(problem.n);
+    for (std::size_t p = 0; p < problem.n; ++p) problem.impulse[p] = problem.drift[p] = Vec3::Zero();
+    for (Constraint& c : at_rest) {
+        c.z.setZero();
+        problem.constraints.add(c);
+        const Vec3 push = problem.vector();
+        problem.impulse[c.particle] = push - c.S * push;
+    }
+    std::vector<ComponentSolve> solves;
+    const std::vector<Vec3> x =
+        problem.solved(problem.whole(), Preconditioner::constrained_block, 1e-3, solves);
+    for (const ComponentSolve& s : solves) CHECK(s.converged);
+    for (const Vec3& dv : x) CHECK(dv.norm() < 1e-12);
+}
+
 TEST_CASE("prescribed values hold to rounding") {
     const Problem problem(30, 0.2, 0.2, 0.5, 3);
     std::vector<ComponentSolve> solves;
