@@ -1,5 +1,6 @@
 #include "sim/mesh/mesh_bends.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

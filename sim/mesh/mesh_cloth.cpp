@@ -1,5 +1,6 @@
 #include "sim/mesh/mesh_cloth.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,6 @@
 #include "sim/solids/mesh_tree.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>

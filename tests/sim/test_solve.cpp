@@ -161,7 +161,8 @@ TEST_CASE("the decomposed solve matches the whole-system solve and needs no more
     }
 }
 
-TEST_CASE("what acts along constrained directions alone is no right-hand side: the solution is found at once") {
+TEST_CASE(
+    "what acts along constrained directions alone is no right-hand side: the solution is found at once") {
     Problem problem(60, 0.1, 0.1, 0.6, 11);
     const std::span<const Constraint> all = problem.constraints.all();
     std::vector<Constraint> at_rest(all.begin(), all.end());
