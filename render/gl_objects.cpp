@@ -43,6 +43,24 @@ void allocate_buffer(GLenum target, GLuint buffer, std::size_t bytes, GLenum usa
     glBufferData(target, static_cast<GLsizeiptr>(bytes), nullptr, usage);
 }
 
+std::vector<std::uint32_t> quad_indices(std::size_t count) {
+    std::vector<std::uint32_t> indices;
+    indices.reserve(6 * count);
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto v = static_cast<std::uint32_t>(4 * k);
+        indices.insert(indices.end(), {v, v + 1, v + 2, v + 2, v + 1, v + 3});
+    }
+    return indices;
+}
+
+void allocate_texels(GLuint texture, GLenum format, int width, int height, GLenum channels, GLenum type) {
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0, channels, type, nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
 void float_attribute(GLuint location, int components, int stride_bytes, std::size_t offset_bytes) {
     glEnableVertexAttribArray(location);
     glVertexAttribPointer(location, components, GL_FLOAT, GL_FALSE, stride_bytes,

@@ -8,6 +8,7 @@
 #include <span>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace unravel {
 
@@ -86,6 +87,12 @@ void fill_buffer(GLenum target, GLuint buffer, const Values& values) {
     glBufferData(target, static_cast<GLsizeiptr>(std::span(values).size_bytes()), values.data(),
                  GL_STATIC_DRAW);
 }
+
+/// Vertices of the two triangles of each of `count` quads, whose corners are vertices 4 k … 4 k + 3.
+std::vector<std::uint32_t> quad_indices(std::size_t count);
+
+/// Storage of a texture that is read texel by texel: one level, no filter. Leaves it bound.
+void allocate_texels(GLuint texture, GLenum format, int width, int height, GLenum channels, GLenum type);
 
 /// Overwrites the beginning of a buffer that allocate_buffer made.
 template <class Values>

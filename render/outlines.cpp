@@ -77,14 +77,8 @@ Outlines::Outlines(const DrawScene& scene)
     allocate_buffer(GL_TEXTURE_BUFFER, points_, ends_.size() * sizeof ends_[0]);
     glBindTexture(GL_TEXTURE_BUFFER, points_table_);
     glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, points_);
-    std::vector<std::uint32_t> quads;
-    quads.reserve(6 * edges);
-    for (std::size_t k = 0; k < edges; ++k) {
-        const auto v = static_cast<std::uint32_t>(4 * k);
-        quads.insert(quads.end(), {v, v + 1, v + 2, v + 2, v + 1, v + 3});
-    }
     glBindVertexArray(vertex_array_);
-    fill_buffer(GL_ELEMENT_ARRAY_BUFFER, quads_, quads);
+    fill_buffer(GL_ELEMENT_ARRAY_BUFFER, quads_, quad_indices(edges));
     glBindVertexArray(0);
     smooth_.sampler("layer", 0);
     smooth_.sampler("depth", 1);

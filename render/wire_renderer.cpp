@@ -40,15 +40,8 @@ WireRenderer::WireRenderer(const DrawScene& scene)
     scratch_points_.resize(particles_);
     scratch_colors_.resize(std::max(particles_, edges_));
 
-    // Two triangles for each quad: vertices 4 k … 4 k + 3.
-    std::vector<std::uint32_t> quads;
-    quads.reserve(6 * std::max(edges_, particles_));
-    for (std::size_t k = 0; k < std::max(edges_, particles_); ++k) {
-        const auto v = static_cast<std::uint32_t>(4 * k);
-        quads.insert(quads.end(), {v, v + 1, v + 2, v + 2, v + 1, v + 3});
-    }
     glBindVertexArray(vertex_array_);
-    fill_buffer(GL_ELEMENT_ARRAY_BUFFER, quads_, quads);
+    fill_buffer(GL_ELEMENT_ARRAY_BUFFER, quads_, quad_indices(std::max(edges_, particles_)));
     glBindVertexArray(0);
 
     wire_.sampler("points", 0);

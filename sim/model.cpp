@@ -63,15 +63,6 @@ double density_at(const Cloth& cloth, const Vec2& uv) {
     return found;
 }
 
-void add_extension(ExtensionSprings& springs, std::uint32_t p, std::uint32_t q, double rest, double stiffness,
-                   double damping) {
-    springs.i.push_back(std::min(p, q));
-    springs.j.push_back(std::max(p, q));
-    springs.rest.push_back(rest);
-    springs.stiffness.push_back(stiffness);
-    springs.damping.push_back(damping);
-}
-
 // Adds a direction's springs, row by row: add(i, j, p, q) for each, p and q its ends as the grid has them.
 template <typename F>
 SpringRows add_rows(const Grid& g, std::size_t first, std::array<int, 2> count, std::array<int, 2> from,
@@ -99,7 +90,7 @@ void add_stretch(const Grid& g, ExtensionSprings& springs, GridSprings& grid) {
             const double rest = axis == 0 ? g.a : g.b;
             const double shape = (axis == 0 ? g.width_v(j) : g.width_u(i)) / rest;
             const auto k = static_cast<std::size_t>(axis);
-            add_extension(springs, p, q, rest, m.stretch[k] * shape, m.stretch_damping[k] * shape);
+            springs.add(p, q, rest, m.stretch[k] * shape, m.stretch_damping[k] * shape);
         };
     };
     grid.u = add_rows(g, springs.size(), {g.patch.cells_u(), g.nv()}, {0, 0}, {1, 0}, along(0));
@@ -111,20 +102,10 @@ void add_shear(const Grid& g, ExtensionSprings& springs, GridSprings& grid) {
     const std::array<int, 2> cells{g.patch.cells_u(), g.patch.cells_v()};
     const auto across = [&](int i, int j, std::uint32_t p, std::uint32_t q) {
         const Material& m = material_at(g.cloth, g.uv(i + 0.5, j + 0.5));
-        add_extension(springs, p, q, diagonal, m.shear * shape, m.shear_damping * shape);
+        springs.add(p, q, diagonal, m.shear * shape, m.shear_damping * shape);
     };
     grid.diagonal = add_rows(g, springs.size(), cells, {0, 0}, {1, 1}, across);
     grid.anti = add_rows(g, springs.size(), cells, {1, 0}, {0, 1}, across);
-}
-
-void add_bend(BendSprings& bends, std::uint32_t p, std::uint32_t q, double rest, double width,
-              const Material& m) {
-    const double stiffness = m.bend * width / 3.0;
-    bends.i.push_back(std::min(p, q));
-    bends.j.push_back(std::max(p, q));
-    bends.rest.push_back(rest);
-    bends.stiffness.push_back(stiffness);
-    bends.slope.push_back(12.0 * stiffness / (rest * rest * rest * m.buckling_strain));
 }
 
 void add_bends(const Grid& g, BendSprings& bends, GridSprings& grid) {
@@ -139,7 +120,8 @@ void add_bends(const Grid& g, BendSprings& bends, GridSprings& grid) {
     const int last_u = g.patch.tube ? (g.nu() > 4 ? g.nu() : 0) : g.nu() - 2, last_v = g.nv() - 2;
     const auto of = [&](double rest, const auto& width) {
         return [&, rest, width](int i, int j, std::uint32_t p, std::uint32_t q) {
-            add_bend(bends, p, q, rest, width(i, j), material_at(g.cloth, g.uv(i, j)));
+            const Material& m = material_at(g.cloth, g.uv(i, j));
+            bends.add(p, q, rest, m.bend * width(i, j) / 3.0, m.buckling_strain);
         };
     };
     const auto wide = [&](int, int) { return across; };
@@ -245,7 +227,8 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
         add_stretch(g, model.springs, springs);
     }
     model.springs.stretch_count = model.springs.size();
-    // A cloth that is a grid also keeps its springs by direction; `model.grids` has one entry for each of those.
+    // A cloth that is a grid also keeps its springs by direction; `model.grids` has one entry for each of
+    // those.
     for (std::size_t c = 0, grid = 0; c < grids.size(); ++c) {
         const Grid& g = grids[c];
         g.patch.grid() ? add_shear(g, model.springs, model.grids[grid++])

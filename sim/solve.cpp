@@ -53,10 +53,14 @@ struct Rows {
         parallel_each(count(), [&](std::size_t k) { f(begin + static_cast<std::uint32_t>(k)); });
     }
 
-    // ‖y‖² in the stopping rule's norm.
-    double measure(const std::vector<Vec3>& y) const {
+    // ‖y‖² of y(row) in the stopping rule's norm.
+    template <typename F>
+    double measure(const F& y) const {
         const std::vector<Mat3>& P = separate_stopping ? ws.stopping.inverse : ws.preconditioner.inverse;
-        return sum([&](std::uint32_t row) { return y[row].dot(P[row] * y[row]); });
+        return sum([&](std::uint32_t row) {
+            const Vec3 at = y(row);
+            return at.dot(P[row] * at);
+        });
     }
 };
 
@@ -78,19 +82,13 @@ ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
     // away, but to rounding only, and what is left outgrows a residual that has become small: so it never
     // gets in.
     const std::vector<const Constraint*>& constraint = rows.ws.constraint;
-    const auto filter = [&](std::uint32_t row) {
-        if (constraint[row]) r[row] = constraint[row]->S * r[row];
+    const auto filtered = [&](std::uint32_t row, const Vec3& y) {
+        return constraint[row] ? Vec3(constraint[row]->S * y) : y;
     };
     // Nor is it a right-hand side: P would take it away from b to rounding only, which may be below zero.
-    rows.each([&](std::uint32_t row) {
-        r[row] = A.b[row];
-        filter(row);
-    });
-    const double target = options.tolerance * options.tolerance * rows.measure(r);
-    rows.each([&](std::uint32_t row) {
-        r[row] = A.b[row] - row_times(A, row, x);
-        filter(row);
-    });
+    const double target = options.tolerance * options.tolerance *
+                          rows.measure([&](std::uint32_t row) { return filtered(row, A.b[row]); });
+    rows.each([&](std::uint32_t row) { r[row] = filtered(row, A.b[row] - row_times(A, row, x)); });
     result.rvm = rows.count();
     // q = P⁻¹ r; returns r·q
     const auto precondition = [&] {
@@ -101,9 +99,10 @@ ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
         }
         return rows.sum([&](std::uint32_t row) { return r[row].dot(q[row]); });
     };
+    const auto residual_at = [&](std::uint32_t row) { return r[row]; };
     double rho = precondition();
     rows.each([&](std::uint32_t row) { p[row] = q[row]; });
-    double residual = rows.separate_stopping ? rows.measure(r) : rho;
+    double residual = rows.separate_stopping ? rows.measure(residual_at) : rho;
 
     while (residual > target && result.iterations < static_cast<std::uint32_t>(options.max_iterations)) {
         const double curvature = rows.sum([&](std::uint32_t row) {
@@ -117,8 +116,7 @@ ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
         const double alpha = rho / curvature;
         const auto advance = [&](std::uint32_t row) {
             x[row] += alpha * p[row];
-            r[row] -= alpha * q[row];
-            filter(row);
+            r[row] = filtered(row, r[row] - alpha * q[row]);
         };
         if (swept) rows.each(advance);
         const double rho_next = swept ? precondition() : rows.sum([&](std::uint32_t row) {
@@ -129,7 +127,7 @@ ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
         const double beta = rho_next / rho;
         rho = rho_next;
         rows.each([&](std::uint32_t row) { p[row] = q[row] + beta * p[row]; });
-        residual = rows.separate_stopping ? rows.measure(r) : rho;
+        residual = rows.separate_stopping ? rows.measure(residual_at) : rho;
     }
     result.converged = residual <= target;
     result.residual = target > 0 ? options.tolerance * std::sqrt(std::max(residual, 0.0) / target) : 0.0;

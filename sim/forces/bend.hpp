@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,6 +20,15 @@ struct BendSprings {
     std::vector<double> stiffness;    ///< (springs) k_b [N·m²]
     std::vector<double> slope;        ///< (springs) c_b [N/m], before the step's own limit
     std::size_t size() const { return i.size(); }
+    /// One more, between particles p and q in either order; c_b such that the push has reached the arc's once
+    /// the spring is shorter by the buckling strain.
+    void add(std::uint32_t p, std::uint32_t q, double length, double k_b, double buckling_strain) {
+        i.push_back(std::min(p, q));
+        j.push_back(std::max(p, q));
+        rest.push_back(length);
+        stiffness.push_back(k_b);
+        slope.push_back(12.0 * k_b / (length * length * length * buckling_strain));
+    }
 };
 
 /// What depends on the step size: the slope that explicit treatment bears, and where it meets the arc's push.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,6 +20,14 @@ struct ExtensionSprings {
     std::vector<double> damping;      ///< (springs) k_d [N·s/m]
     std::size_t stretch_count = 0;    ///< springs [0, stretch_count) are stretch, the rest shear
     std::size_t size() const { return i.size(); }
+    /// One more, between particles p and q in either order.
+    void add(std::uint32_t p, std::uint32_t q, double length, double k_s, double k_d) {
+        i.push_back(std::min(p, q));
+        j.push_back(std::max(p, q));
+        rest.push_back(length);
+        stiffness.push_back(k_s);
+        damping.push_back(k_d);
+    }
 };
 
 /// What a spring does in a step. Inactive: slack, neither force nor Jacobian. Explicit: force only. Implicit:

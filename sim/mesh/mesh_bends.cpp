@@ -187,11 +187,7 @@ void add_mesh_bends(const Cloth& cloth, std::uint32_t first, BendSprings& bends)
         const Material& m = materials.at(held);
         const double stiffness = m.bend * strip.width;
         if (stiffness <= 0 || strip.a == strip.b) continue;
-        bends.i.push_back(first + std::min(strip.a, strip.b));
-        bends.j.push_back(first + std::max(strip.a, strip.b));
-        bends.rest.push_back(strip.rest);
-        bends.stiffness.push_back(stiffness);
-        bends.slope.push_back(12.0 * stiffness / (strip.rest * strip.rest * strip.rest * m.buckling_strain));
+        bends.add(first + strip.a, first + strip.b, strip.rest, stiffness, m.buckling_strain);
     }
 }
 

@@ -12,15 +12,6 @@ namespace {
 
 using Cell = MeshCloth::Cell;
 
-void add_spring(ExtensionSprings& springs, std::uint32_t p, std::uint32_t q, double rest, double stiffness,
-                double damping) {
-    springs.i.push_back(std::min(p, q));
-    springs.j.push_back(std::max(p, q));
-    springs.rest.push_back(rest);
-    springs.stiffness.push_back(stiffness);
-    springs.damping.push_back(damping);
-}
-
 std::size_t corner_of(const Cell& cell, std::uint32_t vertex) {
     return static_cast<std::size_t>(std::find(cell.vertex.begin(), cell.vertex.end(), vertex) -
                                     cell.vertex.begin());
@@ -99,7 +90,7 @@ void add_mesh_stretch(const Cloth& cloth, std::uint32_t first, ExtensionSprings&
             stiffness += shape * (u * m.stretch[0] + (1 - u) * m.stretch[1]);
             damping += shape * (u * m.stretch_damping[0] + (1 - u) * m.stretch_damping[1]);
         }
-        add_spring(springs, first + edge.a, first + edge.b, mesh.length(edge), stiffness, damping);
+        springs.add(first + edge.a, first + edge.b, mesh.length(edge), stiffness, damping);
     }
 }
 
@@ -112,7 +103,7 @@ void add_mesh_shear(const Cloth& cloth, std::uint32_t first, ExtensionSprings& s
         for (const std::size_t k : {0u, 1u}) {
             const std::uint32_t a = cell.vertex[k], b = cell.vertex[k + 2];
             const double rest = (mesh.rest[b] - mesh.rest[a]).norm(), shape = rest * rest / mesh.area(cell);
-            add_spring(springs, first + a, first + b, rest, m.shear * shape, m.shear_damping * shape);
+            springs.add(first + a, first + b, rest, m.shear * shape, m.shear_damping * shape);
         }
     }
 }
