@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace unravel {
 
@@ -15,8 +16,10 @@ constexpr std::uint32_t least_rows = 256;
 constexpr double least_share = 0.3;
 // Stiffest coupling over mass that single precision bears.
 constexpr double stiffest_in_float = 1e5;
-// A multigrid cycle costs about as much as this many iterations with blocks, set-up included.
-constexpr double iterations_worth_multigrid = 40;
+// What a solve by multigrid costs, set-up included, in iterations with blocks.
+constexpr std::uint32_t iterations_worth_multigrid = 60;
+// Cycles after which multigrid gives way to blocks.
+constexpr std::uint32_t most_cycles = 60;
 
 const GridSprings* grid_of(std::span<const GridSprings> grids, std::uint32_t particle) {
     for (const GridSprings& g : grids) {
@@ -65,18 +68,21 @@ void plan_solves(std::span<const GridSprings> grids, std::span<const SpringFamil
 }
 
 // Block-preconditioned iterations grow with the distance that a spring's pull travels within a step, √κ grid
-// spacings, as long as the component is larger than that; measured on hanging and draped sheets.
+// spacings, as long as the component is larger than that; fitted to hanging and draped sheets.
 bool pays_multigrid(const GridSystem& system) {
     const double reach = std::min(std::sqrt(system.stiffest), std::sqrt(static_cast<double>(system.rows)));
-    return 4.0 * reach > iterations_worth_multigrid;
+    return 6.0 * std::pow(reach, 0.75) > iterations_worth_multigrid;
 }
 
 void solve_grid(const SolveOptions& options, GridSolves::Grid& grid) {
+    const bool chooses = options.preconditioner == Preconditioner::automatic;
     const bool multigrid =
-        options.preconditioner == Preconditioner::multigrid ||
-        (options.preconditioner == Preconditioner::automatic && pays_multigrid(grid.system));
+        options.preconditioner == Preconditioner::multigrid || (chooses && pays_multigrid(grid.system));
+    const std::uint32_t patience = multigrid ? most_cycles
+                                   : chooses ? iterations_worth_multigrid
+                                             : std::numeric_limits<std::uint32_t>::max();
     grid.solved = grid.system.stiffest <= stiffest_in_float &&
-                  solve_on_grid(grid.system, multigrid, options, grid.cg, grid.solve);
+                  solve_on_grid(grid.system, multigrid, patience, options, grid.cg, grid.solve);
 }
 
 void take_solution(const GridSystem& system, const Components& components, std::span<Vec3> x) {

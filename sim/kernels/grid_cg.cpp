@@ -121,18 +121,17 @@ struct GridCg {
 
 }  // namespace
 
-bool solve_on_grid(GridSystem& system, bool multigrid, const SolveOptions& options, GridCgWorkspace& ws,
-                   ComponentSolve& out) {
+bool solve_on_grid(GridSystem& system, bool multigrid, std::uint32_t patience, const SolveOptions& options,
+                   GridCgWorkspace& ws, ComponentSolve& out) {
     GridCg cg(system, ws);
     const StencilGrid& g = cg.g;
-    // On a ring the cycle by lines does not always get below single precision's own error: blocks do.
-    if (g.tube) multigrid = false;
     out = {};
     const double target = options.tolerance * options.tolerance * cg.right_side();
     double residual = cg.true_residual();
     out.rvm = system.rows;
     const auto limit = static_cast<std::uint32_t>(options.max_iterations);
     if (multigrid && residual > target) ws.multigrid.build(system);
+    std::uint32_t until = std::min(limit, patience);
     int side = 0;  // of the two directions, the current one
 
     while (residual > target && out.iterations < limit) {
@@ -147,7 +146,7 @@ bool solve_on_grid(GridSystem& system, bool multigrid, const SolveOptions& optio
             });
         };
         if (!multigrid) recursive = advance(0);
-        while (recursive > aim * target && out.iterations < limit) {
+        while (recursive > aim * target && out.iterations < until) {
             if (multigrid) ws.multigrid.apply(ws.r.data(), ws.z.data());
             const double rho_next = multigrid ? cg.product() : recursive;
             beta = rho > 0 ? static_cast<float>(rho_next / rho) : 0.0f;
@@ -168,7 +167,16 @@ bool solve_on_grid(GridSystem& system, bool multigrid, const SolveOptions& optio
         const double before = residual;
         residual = cg.true_residual();
         out.rvm += system.rows;
-        if (!(residual <= target) && !(residual < least_gain * before)) return false;
+        if (residual <= target) break;
+        if (!std::isfinite(residual)) return false;
+        const bool stalled = !(residual < least_gain * before);
+        if (until < limit && (out.iterations >= until || (stalled && multigrid))) {
+            until = limit;
+            multigrid = !multigrid;
+            if (multigrid) ws.multigrid.build(system);
+        } else if (stalled) {
+            return false;
+        }
     }
     out.converged = residual <= target;
     out.residual = target > 0 ? options.tolerance * std::sqrt(std::max(residual, 0.0) / target) : 0.0;

@@ -27,8 +27,12 @@ inline constexpr double grid_cg_tolerance = 1e-6;
 /// the iteration starts again from there unless that one meets it too. Sums run over rows of the grid, in
 /// order: the same bits for any number of threads, and for any instruction set.
 ///
+/// After `patience` iterations the other of the two takes over, once: a system that blocks would take long
+/// for gets its multigrid after all; and where springs come and go so fast that coarse grids tell little of
+/// the fine one, so that a cycle gains hardly more than an iteration with blocks, blocks go on.
+///
 /// False where the residual stalls above the tolerance: single precision can't reach it, nothing is returned.
-bool solve_on_grid(GridSystem& system, bool multigrid, const SolveOptions& options, GridCgWorkspace& ws,
-                   ComponentSolve& out);
+bool solve_on_grid(GridSystem& system, bool multigrid, std::uint32_t patience, const SolveOptions& options,
+                   GridCgWorkspace& ws, ComponentSolve& out);
 
 }  // namespace unravel

@@ -215,7 +215,7 @@ struct Solver {
     Integrator integrator = Integrator::adaptive_imex;
     double step = 1.0 / 240;  ///< s; divides the frame; default: the largest such up to 1/240
     double threshold = 0.2;   ///< on κ of (7): explicit where κ ≤ threshold
-    Preconditioner preconditioner = Preconditioner::constrained_block;
+    Preconditioner preconditioner = Preconditioner::automatic;
     double tolerance = 1e-3;    ///< relative preconditioned residual
     int max_iterations = 2000;  ///< of CG, per component
     bool decompose = true;      ///< false: one system over all particles

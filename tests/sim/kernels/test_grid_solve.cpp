@@ -27,6 +27,7 @@ constexpr Layout layouts[] = {{"open", 37, 29, false},
                               {"ribbon", 1, 150, false},
                               {"row", 150, 1, false},
                               {"tiny", 5, 3, false},
+                              {"narrow tube", 20, 13, true},
                               {"ring", 3, 4, true},
                               {"pair", 2, 1, false}};
 
@@ -101,7 +102,8 @@ struct Solved {
     std::vector<Vec3> x;  // rows of the component, in order
 };
 
-Solved on_grid(const Sheet& sheet, std::uint32_t c, bool multigrid, double tolerance) {
+Solved on_grid(const Sheet& sheet, std::uint32_t c, bool multigrid, double tolerance,
+               std::uint32_t patience = 1000) {
     GridSystem system;
     load_grid_system(sheet.model.grids[0], sheet.family(), sheet.load(), sheet.components, c,
                      sheet.constraints, sheet.guess, Sheet::h, system);
@@ -109,7 +111,7 @@ Solved on_grid(const Sheet& sheet, std::uint32_t c, bool multigrid, double toler
     Solved solved;
     SolveOptions options;
     options.tolerance = tolerance;
-    solved.reached = solve_on_grid(system, multigrid, options, ws, solved.solve);
+    solved.reached = solve_on_grid(system, multigrid, patience, options, ws, solved.solve);
     const Components& all = sheet.components;
     for (std::uint32_t row = all.start[c]; row < all.start[c + 1]; ++row) {
         const std::uint32_t node = all.order[row] - system.first_particle;
@@ -168,6 +170,19 @@ TEST_CASE("multigrid's iterations do not grow with the sheet") {
         const Solved lines = on_grid(sheet, 0, true, 1e-3);
         CHECK(lines.reached);
         CHECK(lines.solve.iterations <= 8);
+    }
+}
+
+TEST_CASE("on a grid either preconditioner takes over from the other") {
+    for (const Layout& layout : {layouts[0], layouts[2]}) {
+        const Sheet sheet(layout, pins | contacts);
+        for (const bool multigrid : {false, true}) {
+            const Solved alone = on_grid(sheet, 0, multigrid, 1e-4);
+            const Solved helped = on_grid(sheet, 0, multigrid, 1e-4, 2);
+            CHECK(helped.reached);
+            CHECK(helped.solve.converged);
+            CHECK((helped.solve.iterations < alone.solve.iterations) == !multigrid);
+        }
     }
 }
 

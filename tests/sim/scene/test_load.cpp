@@ -51,7 +51,7 @@ TEST_CASE("a scene of one empty cloth table has the documented defaults", "[scen
     CHECK(!scene.self_collision);
     CHECK(!scene.solver.adaptive);
     CHECK(scene.solver.integrator == Integrator::adaptive_imex);
-    CHECK(scene.solver.preconditioner == Preconditioner::constrained_block);
+    CHECK(scene.solver.preconditioner == Preconditioner::automatic);
     CHECK(scene.cameras.size() == 1);
     CHECK(scene.clip.frames() == 91);
 }
