@@ -45,14 +45,14 @@ StepReport adaptive_step(Simulation& simulation, const AdaptiveStep& settings, i
         try {
             report =
                 guarded_step(simulation.model, simulation.options, h, state, simulation.ws, simulation.guard);
-            over = excess(settings, report, simulation.guard.before, state);
+            over = excess(settings, report, simulation.ws.before, state);
         } catch (const SimulationError&) {
             if (smallest) throw;
             state.halvings = static_cast<std::uint8_t>(halvings + 1);
             continue;
         }
         if (over > 1 && !smallest) {
-            state = simulation.guard.before;
+            std::swap(state, simulation.ws.before);
             simulation.guard.total = energy;
             state.halvings = static_cast<std::uint8_t>(halvings + 1);
             continue;

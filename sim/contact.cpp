@@ -72,6 +72,20 @@ bool touches_solid(const Solid& solid, const DeformedSolid* deformed, const Pose
     return catches;
 }
 
+SolidReach reach_of(const Solid& solid, const Pose& now, const Pose& next) {
+    SolidReach reach;
+    reach.now = now.translation();
+    reach.next = next.translation();
+    reach.normal = now.linear().col(1);
+    reach.radius = bounding_radius(solid);
+    reach.plane = solid.shape == Shape::plane && solid.motion.empty();
+    reach.travel = (reach.next - reach.now).norm();
+    // Frobenius' norm of the difference is 2√2 sin(θ/2): more than θ for turns below 2.2, and at most 2√2.
+    reach.turn = std::min((next.linear() - now.linear()).norm(), 1.0);
+    reach.skin = (1.0 + open_share) * solid.offset;
+    return reach;
+}
+
 // Touches of one particle.
 using Group = std::span<Touch>;
 
@@ -279,9 +293,11 @@ Contact judge(const Friction& friction, const Touch& touch, const Vec3& force, d
 void pose_solids(std::span<const Solid> solids, double t, double h, SolidPoses& out) {
     out.now.clear();
     out.next.clear();
+    out.reach.clear();
     for (const Solid& solid : solids) {
         out.now.push_back(solid_pose(solid, t));
         out.next.push_back(solid_pose(solid, t + h));
+        out.reach.push_back(reach_of(solid, out.now.back(), out.next.back()));
     }
     const auto deforms = [](const Solid& solid) { return solid.geometry && solid.geometry->deforms(); };
     if (std::none_of(solids.begin(), solids.end(), deforms)) return;
@@ -315,6 +331,7 @@ void find_touches(std::span<const Solid> solids, const SolidPoses& poses, const 
                   std::vector<std::vector<Touch>>& found, std::vector<Touch>& out) {
     out.clear();
     found.resize(chunk_count(view.x.size()));
+    const double fall = view.step * view.gravity.norm();
     parallel_chunks(view.x.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         found[chunk].clear();
         auto next = std::lower_bound(known.begin(), known.end(), begin,
@@ -322,7 +339,9 @@ void find_touches(std::span<const Solid> solids, const SolidPoses& poses, const 
         for (auto p = static_cast<std::uint32_t>(begin); p < end; ++p) {
             while (next != known.end() && next->particle < p) ++next;
             if (pinned.find(p)) continue;
+            const double ahead = view.step * (view.v[p].norm() + fall);
             for (std::uint32_t s = 0; s < solids.size(); ++s) {
+                if (poses.reach[s].is_far(view.x[p], ahead)) continue;
                 const Contact* before = nullptr;
                 for (auto k = next; k != known.end() && k->particle == p; ++k) {
                     if (k->solid == s) before = &*k;

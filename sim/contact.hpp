@@ -16,10 +16,34 @@ namespace unravel {
 /// loses the direction of the solid's normal; static friction takes all three. Two contacts take two
 /// directions, three or a pinch between two solids ("flypapering", Baraff, Witkin & Kass 2003) all.
 
+/// What tells at once that a particle is far from a solid: the ball that holds it, or a plane's half space.
+struct SolidReach {
+    bool plane = false;
+    Vec3 now{0, 0, 0}, next{0, 0, 0};  ///< m, centre, at both ends of the step
+    Vec3 normal{0, 1, 0};              ///< of a plane that rests
+    double radius = 0;                 ///< m; infinite for a plane that moves
+    double travel = 0;                 ///< m, of the centre over the step
+    double turn = 0;                   ///< radians over the step, at most
+    double skin = 0;                   ///< m, gap below which a known contact is still one, with the offset
+
+    /// No contact in a step in which a particle at x moves by `ahead` metres: what turns with the solid comes
+    /// nearer by at most turn times its distance.
+    bool is_far(const Vec3& x, double ahead) const {
+        if (plane) return normal.dot(x - now) > skin + ahead;
+        return (1.0 - turn) * (x - now).norm() > radius + skin + travel + ahead;
+    }
+    /// Certainly not inside at the end of the step.
+    bool is_outside(const Vec3& x) const {
+        if (plane) return normal.dot(x - next) >= 0;
+        return (x - next).squaredNorm() >= radius * radius;
+    }
+};
+
 /// Where each solid is at the beginning and at the end of a step.
 struct SolidPoses {
     std::vector<Pose> now, next;          ///< (solids)
     std::vector<DeformedSolid> deformed;  ///< (solids) or empty where none deforms
+    std::vector<SolidReach> reach;        ///< (solids)
     const DeformedSolid* of(const Solid& solid, std::size_t index) const;
 };
 void pose_solids(std::span<const Solid> solids, double t, double h, SolidPoses& out);

@@ -120,6 +120,11 @@ ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options
 }
 
 void require_explicit_stability(const ClothModel& model, const StepOptions& options, double h) {
+    if (options.integrator == Integrator::automatic) return;  // whichever it takes is stable
+    if (options.integrator == Integrator::explicit_) {
+        if (options.substeps == 0) return;  // as many as it takes
+        h /= options.substeps;
+    }
     const ExplicitLimit limit = explicit_limit(model, options, h);
     if (limit.share < 1) return;
     const std::string fault = fmt::format(
@@ -128,9 +133,11 @@ void require_explicit_stability(const ClothModel& model, const StepOptions& opti
         "of {:.4g} s bears",
         limit.particle, limit.kappa, limit.share, h);
     if (std::isfinite(limit.step)) {
-        throw UnstableStep(fmt::format(
-            "{}; the largest stable step is {:.3g} s, or take solver.integrator = \"adaptive-imex\"", fault,
-            limit.step));
+        throw UnstableStep(
+            fmt::format("{}; the largest stable step is {:.3g} s; solver.substeps = 0 divides each step "
+                        "until it is stable, "
+                        "solver.integrator = \"adaptive-imex\" bears it whole",
+                        fault, limit.step));
     }
     throw UnstableStep(fmt::format("{}; take a solver.threshold of 0.5 or less", fault));
 }

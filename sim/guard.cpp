@@ -201,12 +201,11 @@ double total_energy(const StepReport& report) {
 // Linearises the step again until it ends with no more energy than it began with, or until its end is met;
 // keeps that where it holds less.
 StepReport take_again(const ClothModel& model, const StepOptions& options, double h, double energy,
-                      const StepReport& first, const ClothState& before, ClothState& state,
-                      StepWorkspace& ws) {
+                      const StepReport& first, ClothState& state, StepWorkspace& ws) {
     StepOptions thorough = options;
     thorough.energy_limit = energy;
-    ClothState once = before;
-    std::swap(state, once);
+    ClothState once = state;
+    std::swap(state, ws.before);
     const StepReport second = step(model, thorough, h, state, ws);
     const bool better = total_energy(second) < total_energy(first);
     if (!better) std::swap(state, once);
@@ -226,27 +225,26 @@ StepReport take_again(const ClothModel& model, const StepOptions& options, doubl
 
 StepReport guarded_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                         StepWorkspace& ws, Guard& guard) {
-    guard.before = state;
+    StepReport report = step(model, options, h, state, ws);
+    if (!options.measure) return report;
+    const bool grew = total_energy(report) > guard.total + guard.rounding;
+    if (grew && ws.coupled && std::isfinite(total_energy(report)))
+        report = take_again(model, options, h, guard.total, report, state, ws);
+    Judgement judgement{model, options, state, h, {}};
+    judgement.failure.step = report.step;
+    judgement.failure.t = ws.before.t;
+    judgement.failure.h = h;
     try {
-        StepReport report = step(model, options, h, state, ws);
-        const bool grew = options.measure && total_energy(report) > guard.total + guard.rounding;
-        if (grew && ws.coupled && std::isfinite(total_energy(report)))
-            report = take_again(model, options, h, guard.total, report, guard.before, state, ws);
-        Judgement judgement{model, options, state, h, {}};
-        judgement.failure.step = report.step;
-        judgement.failure.t = guard.before.t;
-        judgement.failure.h = h;
-        if (!options.measure) return report;
         judgement.judge_finite(report);
         judgement.judge_strain(report, guard.strain);
         judgement.judge_energy(report, guard.energy);
         judgement.judge_solution(report, ws, guard.residual);
-        guard.total = total_energy(report);
-        return report;
     } catch (const SimulationError&) {
-        std::swap(state, guard.before);
+        std::swap(state, ws.before);
         throw;
     }
+    guard.total = total_energy(report);
+    return report;
 }
 
 }  // namespace unravel

@@ -14,7 +14,6 @@ struct Guard {
     double residual = 0.1;       ///< relative, of a component that CG did not solve to its tolerance
     double total = infinite;     ///< J, motion, height and springs after the last step
     double rounding = infinite;  ///< J, what `total` may grow by in a step before it is taken again
-    ClothState before;           ///< what a failing step is taken back to; memory kept between steps
 
     static constexpr double infinite = std::numeric_limits<double>::infinity();
 };

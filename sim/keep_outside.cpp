@@ -8,6 +8,7 @@ void keep_outside(std::span<const Solid> solids, const SolidPoses& poses, const 
     parallel_each(x.size(), [&](std::size_t p) {
         if (constraints.fully(static_cast<std::uint32_t>(p))) return;
         for (std::size_t s = 0; s < solids.size(); ++s) {
+            if (poses.reach[s].is_outside(x[p])) continue;
             const Vec3 local = poses.next[s].inverse(Eigen::Isometry) * x[p];
             const SurfacePoint surface = nearest_surface(solids[s], poses.of(solids[s], s), true, local, 0.0);
             if (surface.distance >= 0) continue;

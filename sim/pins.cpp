@@ -5,7 +5,7 @@ namespace unravel {
 void constrain_pins(const ClothModel& model, const StepView& view, std::span<const Vec3> base, double t_end,
                     Constraints& constraints) {
     for (const PinnedGroup& pin : model.pins) {
-        if (t_end > pin.release) continue;
+        if (!holds(pin, t_end)) continue;
         for (std::size_t k = 0; k < pin.particles.size(); ++k) {
             const std::uint32_t p = pin.particles[k];
             if (constraints.find(p)) continue;  // the first of several pins decides

@@ -6,6 +6,12 @@
 
 namespace unravel {
 
+/// Whether a pin holds its particles through a step that ends at t_end [s]. A nanosecond's grace: sums of
+/// step sizes end beside the time that they are to reach.
+inline bool holds(const PinnedGroup& pin, double t_end) {
+    return t_end <= pin.release + 1e-9;
+}
+
 /// Constrains the particles of every pin not yet released so that they end the step where their motion has
 /// them.
 ///   t_end  s, the end of the step;   base  (particles) positions x' starts from [m]

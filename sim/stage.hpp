@@ -48,4 +48,15 @@ void solve_again_where_taut(const ClothModel& model, const StepOptions& options,
 void iterate(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
              StepWorkspace& ws, StepReport& report);
 
+/// What a step of h seconds from `state` makes, but for what it computes: x, v, dv and contacts.
+void begin_next(const ClothState& state, double h, ClothState& next);
+
+/// step() by any scheme that treats all particles together.
+StepReport coupled_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
+                        StepWorkspace& ws);
+
+/// step() of `explicit`: divided into substeps, and swept over grids (sim/sweep/).
+StepReport explicit_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
+                         StepWorkspace& ws);
+
 }  // namespace unravel

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/choose_integrator.hpp"
 #include "sim/pins.hpp"
 #include "sim/stage.hpp"
 
@@ -51,13 +52,15 @@ void find_reactions(const ClothModel& model, StepWorkspace& ws) {
     });
 }
 
-// Contact makes velocities jump: a touching particle looks back on a past in which it has always moved as it
-// does now.
-void forget_impacts(double h, const StepWorkspace& ws, ClothState& state) {
+// What a multistep scheme looks back on. Contact makes velocities jump: a touching particle looks back on a
+// past in which it has always moved as it does now.
+void remember(double h, const ClothState& state, const StepWorkspace& ws, ClothState& next) {
+    next.x_previous = state.x;
+    next.v_previous = state.v;
     for (const Touch& touch : ws.touches) {
         const std::uint32_t p = touch.contact.particle;
-        state.v_previous[p] = state.v[p];
-        state.x_previous[p] = state.x[p] - h * state.v[p];
+        next.v_previous[p] = next.v[p];
+        next.x_previous[p] = next.x[p] - h * next.v[p];
     }
 }
 
@@ -89,9 +92,25 @@ StepOptions step_options(const Solver& solver) {
     options.bend = solver.bend;
     options.activation = solver.activation;
     options.activation_band = solver.activation_band;
+    options.substeps = solver.substeps;
     options.solve = {solver.preconditioner, solver.tolerance, solver.max_iterations};
     options.decompose = solver.decompose;
     return options;
+}
+
+void begin_next(const ClothState& state, double h, ClothState& next) {
+    const std::size_t n = state.x.size();
+    next.step = state.step + 1;
+    next.t = state.t + h;
+    next.h_previous = h;
+    next.halvings = state.halvings;
+    next.whole_steps = state.whole_steps;
+    next.part = state.part;
+    next.strain = state.strain;
+    next.contacts.clear();
+    for (std::vector<Vec3>* y : {&next.x, &next.v, &next.dv}) y->resize(n);
+    next.x_previous.clear();
+    next.v_previous.clear();
 }
 
 ClothState initial_state(const Placement& placement) {
@@ -104,6 +123,15 @@ ClothState initial_state(const Placement& placement) {
 
 StepReport step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                 StepWorkspace& ws) {
+    if (options.integrator == Integrator::automatic)
+        return step(model, choose_integrator(model, options, h, ws), h, state, ws);
+    // `explicit` has no system, so that its steps can be many, short, and fused.
+    if (options.integrator == Integrator::explicit_) return explicit_step(model, options, h, state, ws);
+    return coupled_step(model, options, h, state, ws);
+}
+
+StepReport coupled_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
+                        StepWorkspace& ws) {
     const std::size_t n = model.size();
     StepReport report;
     report.step = state.step + 1;
@@ -141,30 +169,23 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
     }
 
     require_finite(ws, state, h);
+    ClothState& next = ws.before;
+    begin_next(state, h, next);
     if (!model.solids.empty()) {
         find_reactions(model, ws);
-        judge_touches(model.solids, view, ws.constraints, ws.reaction, ws.touches, state.contacts);
+        judge_touches(model.solids, view, ws.constraints, ws.reaction, ws.touches, next.contacts);
         timer.lap(report.times.contact);
     }
 
     // v' = v* + Δv, x' = x̃ + h̃ v' (Eq. 6), and the contacts' depth corrections that `base` carries
-    if (scheme.multistep) {
-        state.x_previous.swap(state.x);
-        state.v_previous.swap(state.v);
-        state.x.resize(n);
-        state.v.resize(n);
-    }
     parallel_each(n, [&](std::size_t p) {
-        const Vec3 v_next = stage.v_at[p] + ws.dv[p];
-        state.dv[p] = iterates ? Vec3(v_next - state.v[p]) : ws.dv[p];
-        state.v[p] = v_next;
-        state.x[p] = ws.base[p] + stage.h * v_next;
+        next.v[p] = stage.v_at[p] + ws.dv[p];
+        next.dv[p] = iterates ? Vec3(next.v[p] - state.v[p]) : ws.dv[p];
+        next.x[p] = ws.base[p] + stage.h * next.v[p];
     });
-    if (!model.solids.empty()) keep_outside(model.solids, ws.poses, ws.constraints, h, state.x, state.v);
-    if (scheme.multistep) forget_impacts(h, ws, state);
-    state.h_previous = h;
-    ++state.step;
-    state.t += h;
+    if (!model.solids.empty()) keep_outside(model.solids, ws.poses, ws.constraints, h, next.x, next.v);
+    if (scheme.multistep) remember(h, state, ws, next);
+    std::swap(state, next);
     timer.lap(report.times.advance);
 
     report.t = state.t;

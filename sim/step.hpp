@@ -15,6 +15,7 @@
 #include "sim/solve.hpp"
 #include "sim/solve_components.hpp"
 #include "sim/state.hpp"
+#include "sim/sweep/explicit_sweep.hpp"
 #include "sim/system.hpp"
 
 namespace unravel {
@@ -26,6 +27,8 @@ struct StepOptions {
     Activation activation = Activation::predicted;  ///< when a slack spring becomes implicit
     double activation_band = 0.0;                   ///< see extension_forces()
     SolveOptions solve;
+    int substeps = 1;       ///< of `explicit`; 0: as many as its limit of stability asks for
+    bool sweep = true;      ///< false: explicit steps of grids go the way of all others (the oracle)
     bool decompose = true;  ///< false: the whole cloth as one system
     /// J: linearise again, whatever the scheme, until the step's end is met or holds no more energy than
     /// this.
@@ -64,14 +67,24 @@ struct StepWorkspace {
     GridSolves grid_solves, whole_grid_solves;
     std::vector<ComponentSolve> solves, whole_solves;  ///< (components)
     std::vector<Vec3> dv;                              ///< (particles) m/s
+    ExplicitSweep sweep;
+    Integrator chosen = Integrator::automatic;  ///< what `auto` takes for steps of `chosen_for` seconds
+    double chosen_for = 0;
+    double explicit_step = 0;  ///< s, the largest stable step of `explicit`; 0: not asked for yet
+    /// The state that the step makes; once made it is the other's, and this is the state before the step.
+    ClothState before;
     MeasureWorkspace measure;
 };
 
 /// Starts a state from where the scene places the cloth.
 ClothState initial_state(const Placement& placement);
 
-/// Advances the state by h seconds. Throws SimulationError where a velocity would not be finite; the state is
-/// then what it was before.
+/// Substeps that a step of h seconds of `explicit` is divided into: as many as the options say, or as bring
+/// each below its limit of stability (sim/explicit_limit.hpp) by a margin.
+int substeps_of(const ClothModel& model, const StepOptions& options, double h, StepWorkspace& ws);
+
+/// Advances the state by h seconds; ws.before is then what it was. Throws SimulationError where a velocity
+/// would not be finite; the state is then what it was before.
 StepReport step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                 StepWorkspace& ws);
 

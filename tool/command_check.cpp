@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sim/choose_integrator.hpp"
 #include "sim/effects.hpp"
 #include "sim/explicit_limit.hpp"
 #include "sim/scene/load.hpp"
@@ -23,7 +24,7 @@ constexpr double bytes_per_particle = 1900;
 
 int command_check(const Options& options) {
     const Scene scene = load_scene(options.scene, options.overrides);
-    const Simulation simulation = start_simulation(scene);
+    Simulation simulation = start_simulation(scene);
     require_explicit_stability(simulation.model, simulation.options, scene.solver.step);
     const std::vector<Effect> effects = list_effects(scene);
     const double n = static_cast<double>(simulation.model.size());
@@ -53,6 +54,15 @@ int command_check(const Options& options) {
                scene.solver.step);
     fmt::print("  about {:.0f} MB of memory and {} of simulation on one core\n", n * bytes_per_particle / 1e6,
                duration_text(seconds));
+    if (scene.solver.integrator == Integrator::automatic) {
+        const IntegratorCosts costs =
+            count_costs(simulation.model, simulation.options, scene.solver.step, simulation.ws);
+        fmt::print(
+            "  auto takes {}: explicit would need {} substeps, about {:.2g} us per particle and step against "
+            "{:.2g}\n",
+            costs.cheaper() == Integrator::explicit_ ? "explicit substeps" : "adaptive-imex", costs.substeps,
+            1e-3 * costs.explicit_cost, 1e-3 * costs.coupled_cost);
+    }
     for (const Effect& e : effects)
         fmt::print("  {:<15} {} because {}\n", e.name, e.on ? "on, " : "off,", e.because);
     if (limit.limited > 0) {

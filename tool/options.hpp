@@ -65,6 +65,7 @@ struct Options {
     std::int64_t particle = -1, spring = -1;  ///< inspect; −1: none asked for
     std::string format = "obj";               ///< export
     bool quick = false;                       ///< reproduce
+    std::string sizes;                        ///< bench: numbers of particles, separated by commas
     std::string what;                         ///< schema: scene, run or stats
     ClusterOptions cluster;
     int point = -1;          ///< --point: this piece of the work only, counted from 0; −1: all

@@ -1,27 +1,12 @@
 #include "sim/forces/bend.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace unravel {
 
-namespace {
-
-// Chebyshev interpolation of F over s in [0, 1], rewritten in powers of 1 - s. The arc's exact relation is
-// implicit (s = sin θ/θ); this is its stated fit.
-constexpr std::array<double, 11> arc_coefficients{
-    -3.0000668506335959, -1.7838760088811887, -1.8684086241163929, 8.6926411869192428,
-    -73.700347039509623, 317.53574010698077,  -840.54866385932951, 1371.0890893404605,
-    -1353.4347382739654, 741.30518410308287,  -174.15581069378692};
-
-}  // namespace
-
 double arc_force(double s) {
-    const double u = 1.0 - std::clamp(s, 0.0, 1.0);
-    double value = 0;
-    for (auto c = arc_coefficients.rbegin(); c != arc_coefficients.rend(); ++c) value = value * u + *c;
-    return value;
+    return arc_force_within(std::clamp(s, 0.0, 1.0));
 }
 
 double arc_energy(double s) {

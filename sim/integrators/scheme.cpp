@@ -16,6 +16,7 @@ const Scheme& scheme_of(Integrator choice) {
             return bdf2;
         case Integrator::adaptive_imex2:
             return sbdf2;
+        case Integrator::automatic:  // where it does not take explicit substeps
         case Integrator::adaptive_imex:
             break;
     }

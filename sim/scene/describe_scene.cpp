@@ -5,8 +5,8 @@ namespace unravel {
 namespace {
 
 // In the order of the enums in scene.hpp.
-constexpr std::string_view integrators[] = {"explicit",      "implicit", "newton",        "imex",
-                                            "adaptive-imex", "bdf2",     "adaptive-imex2"};
+constexpr std::string_view integrators[] = {"explicit",      "implicit", "newton",         "imex",
+                                            "adaptive-imex", "bdf2",     "adaptive-imex2", "auto"};
 constexpr std::string_view preconditioners[] = {"none", "diagonal", "block", "constrained-block",
                                                 "ssor", "ic0", "auto", "stencil-block", "multigrid"};
 
@@ -46,6 +46,8 @@ void describe(Fields& f, Solver& solver) {
                 "a whole part of a frame [s]; a number or a fraction such as \"1/240\"; default: the largest "
                 "up to 1/240"},
                solver.step, {1e-7, 1, false, "s"});
+    f.integer({"substeps", "parts into which \"explicit\" divides each step; 0: as many as keep it stable"},
+              solver.substeps, 0, 1'000'000);
     f.number({"threshold", "springs with (h/m)(k h + 2 k_d) up to this are handled explicitly"},
              solver.threshold, {0, 1e9});
     f.choice({"preconditioner", "of the conjugate gradients"}, solver.preconditioner, preconditioners);

@@ -176,7 +176,9 @@ struct Solid {
     SourcePlace place;
 };
 
-enum class Integrator { explicit_, implicit, newton, imex, adaptive_imex, bdf2, adaptive_imex2 };
+/// `automatic` takes explicit substeps or adaptive IMEX, whichever is counted cheaper
+/// (sim/choose_integrator.hpp).
+enum class Integrator { explicit_, implicit, newton, imex, adaptive_imex, bdf2, adaptive_imex2, automatic };
 /// `automatic` chooses per component. `stencil_block` is the constrained block, and `multigrid` a cycle by
 /// lines, in single precision on the stencil of a grid; what lies on no grid gets the constrained block on
 /// rows.
@@ -214,6 +216,7 @@ struct AdaptiveStep {
 struct Solver {
     Integrator integrator = Integrator::adaptive_imex;
     double step = 1.0 / 240;  ///< s; divides the frame; default: the largest such up to 1/240
+    int substeps = 1;         ///< of `explicit`, in each step; 0: as many as its limit of stability asks for
     double threshold = 0.2;   ///< on κ of (7): explicit where κ ≤ threshold
     Preconditioner preconditioner = Preconditioner::automatic;
     double tolerance = 1e-3;    ///< relative preconditioned residual

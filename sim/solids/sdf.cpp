@@ -109,4 +109,22 @@ SurfacePoint nearest_surface(const Solid& solid, const DeformedSolid* deformed, 
     return out;
 }
 
+double bounding_radius(const Solid& solid) {
+    switch (solid.shape) {
+        case Shape::sphere:
+            return solid.radius;
+        case Shape::box:
+            return 0.5 * solid.size.norm();
+        case Shape::cylinder:
+            return std::hypot(solid.radius, 0.5 * solid.height);
+        case Shape::capsule:
+            return solid.radius + 0.5 * solid.height;
+        case Shape::mesh:
+            return solid.geometry->reach;
+        case Shape::plane:
+            break;
+    }
+    return std::numeric_limits<double>::infinity();
+}
+
 }  // namespace unravel

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/forces/bend.hpp"
+#include "sim/model.hpp"
+
+namespace unravel {
+
+/// A coefficient of every place on a grid, row by row; rows that equal the one before share its memory, so
+/// that the few numbers of an even cloth stay in the first cache.
+class RowTable {
+public:
+    /// From (rows × width) values.
+    void build(std::span<const double> values, std::size_t width);
+    const double* row(std::size_t j) const { return values_.data() + offset_[j]; }
+
+private:
+    std::vector<std::size_t> offset_;  // (rows)
+    std::vector<double> values_;
+};
+
+/// The springs of a family are those that join (i + from_u, j) with (i + to_u, j + dv), for every base column
+/// i and row j of a cloth's grid.
+struct GridFamily {
+    int from_u, to_u, dv;
+};
+/// Stretch along u and v, shear along both diagonals; bend likewise at twice the distance.
+inline constexpr std::array<GridFamily, 4> extension_families{{{0, 1, 0}, {0, 0, 1}, {0, 1, 1}, {1, 0, 1}}};
+inline constexpr std::array<GridFamily, 4> bend_families{{{0, 2, 0}, {0, 0, 2}, {0, 2, 2}, {2, 0, 2}}};
+
+/// A cloth's springs as the explicit sweep reads them: by family, no indices.
+struct GridTables {
+    struct Extension {
+        double rest = 0;  ///< m
+        RowTable stiffness, damping;
+    };
+    struct Bend {
+        double rest = 0;  ///< m
+        bool any = false;
+        RowTable arc, slope, crossing;  ///< as bend_row() takes them; 0 where there is no spring
+    };
+    std::array<Extension, 4> extension;
+    std::array<Bend, 4> bend;
+    RowTable mass, inverse_mass;
+};
+
+/// Base columns of a family on a cloth.
+inline std::size_t family_columns(const ClothPatch& patch, const GridFamily& family) {
+    const int reach = family.from_u > family.to_u ? family.from_u : family.to_u;
+    const int columns = patch.tube ? patch.particles[0] : patch.particles[0] - reach;
+    return columns > 0 ? static_cast<std::size_t>(columns) : 0;
+}
+
+/// The tables of one cloth for a step size whose bend limit is `limit`. False where its springs are not a
+/// grid's: then there is nothing to sweep.
+bool build_tables(const ClothModel& model, const ClothPatch& patch, const BendLimit& limit,
+                  GridTables& tables);
+
+}  // namespace unravel
