@@ -179,9 +179,11 @@ TEST_CASE("a cloth pulled over a table is as taut as kinetic friction makes it")
 }
 
 TEST_CASE("a tablecloth snatched away over the table's edge is not welded to it") {
-    // What lets go at the edge, because the cloth before it pulls it off, must not be caught again by its weight.
+    // What lets go at the edge, because the cloth before it pulls it off, must not be caught again by its
+    // weight. Which contacts let go is read from the solution: at 1e-3 its noise alone moves the peak from
+    // 12% to 45%.
     Scene scene = load_scene(UNRAVEL_SCENES "/pulled_tablecloth.toml",
-                             {"cloth.particles=[25, 61]", "solver.step='1/400'"});
+                             {"cloth.particles=[25, 61]", "solver.step='1/400'", "solver.tolerance=1e-5"});
     Pin& pin = scene.cloths[0].pins[0];
     pin.motion[0].time = 0.2;
     pin.motion[1].time = 0.7;  // a metre in half a second
@@ -189,8 +191,8 @@ TEST_CASE("a tablecloth snatched away over the table's edge is not welded to it"
     Simulation simulation = start_simulation(scene);
     double most = 0;
     for (int k = 0; k < 280; ++k) most = std::max(most, next_step(simulation).max_strain);
-    // A sheet struck at speed v strains by v/c, c² = stretch/density, and where a still end reflects that by twice
-    // as much; the pull's greatest speed is 3 m/s.
+    // A sheet struck at speed v strains by v/c, c² = stretch/density, and where a still end reflects that by
+    // twice as much; the pull's greatest speed is 3 m/s.
     CHECK(most < 1.25 * 2 * 3 / std::sqrt(400 / 0.2));
 }
 
