@@ -69,6 +69,7 @@ void members(Archive& archive, Record& r) {
         archive(s.rvm_whole);
         archive(s.whole_difference);
         archive(s.converged);
+        archive(s.substeps);
         archive(s.rejected);
         archive(s.contacts);
         archive(s.self_contacts);

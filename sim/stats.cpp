@@ -60,6 +60,8 @@ constexpr StatsColumn columns[] = {
      [](R r) { return r.rvm_whole ? fmt::format("{}", *r.rvm_whole) : std::string(); }},
     {"converged", "1 if every component reached the tolerance",
      [](R r) { return fmt::format("{:d}", r.converged); }},
+    {"substeps", "parts into which an explicit step was divided",
+     [](R r) { return fmt::format("{}", r.substeps); }},
     {"rejected", "adaptive step: larger steps tried before this one and undone",
      [](R r) { return fmt::format("{}", r.rejected); }},
     {"contacts", "particle-solid contacts", [](R r) { return fmt::format("{}", r.contacts); }},

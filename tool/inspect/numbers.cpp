@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "sim/stage.hpp"
+#include "sim/system.hpp"
 #include "tool/render_options.hpp"
 
 namespace unravel {
@@ -111,7 +113,11 @@ Json particle_numbers(const InspectedStep& step, std::int64_t particle) {
     require_index(particle, model.size(), "particle");
     const auto p = static_cast<std::uint32_t>(particle);
     const StepWorkspace& ws = step.simulation.ws;
-    const std::uint32_t row = ws.system.row_of[p];
+    // Parts of the step may have been solved without being assembled.
+    System system;
+    assemble(families_of(model, ws), {model.mass, ws.impulse, ws.drift}, ws.components, ws.constraints,
+             ws.stage.h, system);
+    const std::uint32_t row = system.row_of[p];
     Json json{{"particle", p},
               {"place", place_json(model, p)},
               {"mass", model.mass[p]},
@@ -122,16 +128,16 @@ Json particle_numbers(const InspectedStep& step, std::int64_t particle) {
               {"component", step.record.component[p]},
               {"free_directions", step.record.free[p]},
               {"row", row},
-              {"diagonal_block", matrix_json(ws.system.diagonal[row])},
-              {"b", vector_json(ws.system.b[row])},
+              {"diagonal_block", matrix_json(system.diagonal[row])},
+              {"b", vector_json(system.b[row])},
               {"coupled_particles", Json::array()},
               {"contacts", Json::array()},
               {"springs", Json::array()}};
     if (const Constraint* c = ws.constraints.find(p)) {
         json["constraint"] = {{"S", matrix_json(c->S)}, {"z", vector_json(c->z)}};
     }
-    for (std::uint32_t e = ws.system.start[row]; e < ws.system.start[row + 1]; ++e)
-        json["coupled_particles"].push_back(ws.components.order[ws.system.entries[e].column]);
+    for (std::uint32_t e = system.start[row]; e < system.start[row + 1]; ++e)
+        json["coupled_particles"].push_back(ws.components.order[system.entries[e].column]);
     for (const Contact& c : step.record.state.contacts) {
         if (c.particle != p || c.force < 0) continue;
         json["contacts"].push_back(
