@@ -19,19 +19,22 @@ void add_forces(const ClothModel& model, StepWorkspace& ws) {
     ws.impulse.resize(model.size());
     parallel_each(model.size(), [&](std::size_t p) {
         Vec3 f = model.mass[p] * model.gravity;
+        if (ws.rowwise) f += ws.gathered[p];
         const auto gather = [&](const Adjacency& adjacency, const std::vector<Vec3>& force) {
             for (std::uint32_t k = adjacency.start[p]; k < adjacency.start[p + 1]; ++k) {
                 const auto [s, other] = adjacency.entries[k];
                 f += other > p ? force[s] : Vec3(-force[s]);
             }
         };
-        gather(model.spring_adjacency, ws.extension.force);
+        if (!ws.rowwise) {
+            gather(model.spring_adjacency, ws.extension.force);
+            gather(model.bend_adjacency, ws.bend_is_implicit ? ws.implicit_bend.forces.force : ws.bend);
+        }
         if (model.has_temporary_springs()) gather(ws.self.adjacency, ws.self.forces.force);
-        gather(model.bend_adjacency, ws.bend_is_implicit ? ws.implicit_bend.forces.force : ws.bend);
         const Vec3 friction = rubbed ? ws.friction[p] : Vec3(Vec3::Zero());
         ws.impulse[p] = friction + stage.h_force * f + model.mass[p] * (stage.v[p] - stage.v_at[p]);
     });
-    if (model.wind) add_air(model.air, ws.air, stage.h_force, ws.impulse);
+    if (model.wind && !ws.rowwise) add_air(model.air, ws.air, stage.h_force, ws.impulse);
 }
 
 void count_solves(const std::vector<ComponentSolve>& solves, StepReport& report) {
@@ -127,7 +130,8 @@ double energy_at_end(const ClothModel& model, StepWorkspace& ws) {
 Families families_of(const ClothModel& model, const StepWorkspace& ws) {
     Families families;
     const auto add = [&](const SpringFamily& family) { families.list[families.count++] = family; };
-    add({&model.springs, &model.spring_adjacency, &ws.extension});
+    const std::span<const Vec3> at = ws.rowwise ? ws.stage.x_at : std::span<const Vec3>{};
+    add({&model.springs, &model.spring_adjacency, &ws.extension, {}, at});
     if (model.has_temporary_springs())
         add({&ws.self.springs, &ws.self.adjacency, &ws.self.forces, ws.drift_from_start});
     if (ws.bend_is_implicit)
@@ -138,19 +142,32 @@ Families families_of(const ClothModel& model, const StepWorkspace& ws) {
 void explicit_forces(const ClothModel& model, const StepOptions& options, double t, double h,
                      StageTimer& timer, StepWorkspace& ws, StepReport& report) {
     const Stage& stage = ws.stage;
-    if (model.wind) {
-        ws.air.resize(model.air.corners.size());
-        air_forces(model.air, *model.wind, t, h, model.mass, stage.x_at, stage.v_at, ws.air);
-        timer.lap(report.times.air);
-    }
+    const Scheme& scheme = scheme_of(options.integrator);
     limit_bend(model.bends, model.mass, h, ws.bend_limit);
-    ws.bend_is_implicit = scheme_of(options.integrator).implicit_bend &&
-                          options.bend == BendTreatment::scheme && model.bends.size() > 0;
-    if (!ws.bend_is_implicit) {
+    ws.bend_is_implicit =
+        scheme.implicit_bend && options.bend == BendTreatment::scheme && model.bends.size() > 0;
+    const bool at_start =
+        stage.x_linear.empty() && (options.activation != Activation::ahead || scheme.multistep);
+    ws.rowwise = options.sweep && at_start && !ws.bend_is_implicit &&
+                 ws.rows.prepare(model, ws.bend_limit,
+                                 {h, scheme.splitting(options.threshold), options.activation_band});
+    if (ws.rowwise) {
+        ws.gathered.resize(model.size());
+        ws.rows.place(stage.x_at, stage.v_at);
+        ws.rows.bend();
+    } else if (!ws.bend_is_implicit) {
         ws.bend.resize(model.bends.size());
         bend_forces(model.bends, ws.bend_limit, stage.x_at, ws.bend);
     }
     timer.lap(report.times.forces);
+    if (!model.wind) return;
+    if (ws.rowwise) {
+        ws.rows.blow(model, t);
+    } else {
+        ws.air.resize(model.air.corners.size());
+        air_forces(model.air, *model.wind, t, h, model.mass, stage.x_at, stage.v_at, ws.air);
+    }
+    timer.lap(report.times.air);
 }
 
 void linearise(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
@@ -162,8 +179,12 @@ void linearise(const ClothModel& model, const StepOptions& options, double h, St
         timer.lap(report.times.collision);
     }
     place_linearisation(model, options, ws);
-    extension_forces(model.springs, model.mass, stage.x_at, stage.v_at, h, splitting, options.activation_band,
-                     ws.extension, ws.taut, ws.ahead);
+    if (ws.rowwise) {
+        ws.rows.gather(model, ws.taut, ws.gathered, ws.extension.state);
+    } else {
+        extension_forces(model.springs, model.mass, stage.x_at, stage.v_at, h, splitting,
+                         options.activation_band, ws.extension, ws.taut, ws.ahead);
+    }
     if (ws.bend_is_implicit)
         bend_jacobians(model.bends, ws.bend_limit, ws.ahead.empty() ? stage.x_at : ws.ahead,
                        ws.implicit_bend);
@@ -214,7 +235,11 @@ void solve_stage(const ClothModel& model, const StepOptions& options, std::span<
 
 void predict_taut(const ClothModel& model, std::span<const Vec3> dv, StepWorkspace& ws) {
     predict(dv, ws);
-    mark_taut(model.springs, ws.end, {}, ws.taut);
+    if (ws.rowwise) {
+        ws.rows.mark(model, ws.end, ws.taut);
+    } else {
+        mark_taut(model.springs, ws.end, {}, ws.taut);
+    }
 }
 
 void solve_again_where_taut(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
@@ -235,6 +260,7 @@ void iterate(const ClothModel& model, const StepOptions& options, double h, Stag
             stage.v_at[p] += share * ws.dv[p];
             stage.x_at[p] = ws.base[p] + stage.h * stage.v_at[p];
         });
+        if (ws.rowwise) ws.rows.place(stage.x_at, stage.v_at);
         ws.taut.clear();
         linearise(model, options, h, timer, ws, report);
     };

@@ -154,9 +154,9 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     ws.t_end = state.t + h;
     // Forces at (x*, v*) (Sec. 2) and the adaptive IMEX splitting (Sec. 3.5)
     ws.taut.clear();
+    explicit_forces(model, options, state.t, h, timer, ws, report);
     // Multistep schemes look ahead by themselves: at x*.
     if (options.activation == Activation::predicted && !scheme.multistep) predict_taut(model, state.dv, ws);
-    explicit_forces(model, options, state.t, h, timer, ws, report);
     linearise(model, options, h, timer, ws, report);
 
     // Independent components (Sec. 5), A Δv = b (Eq. 5) under Sx = Sb, (I − S)x = (I − S)z (Eq. 9)

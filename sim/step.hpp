@@ -16,6 +16,7 @@
 #include "sim/solve_components.hpp"
 #include "sim/state.hpp"
 #include "sim/sweep/explicit_sweep.hpp"
+#include "sim/sweep/row_forces.hpp"
 #include "sim/system.hpp"
 
 namespace unravel {
@@ -28,7 +29,7 @@ struct StepOptions {
     double activation_band = 0.0;                   ///< see extension_forces()
     SolveOptions solve;
     int substeps = 1;       ///< of `explicit`; 0: as many as its limit of stability asks for
-    bool sweep = true;      ///< false: explicit steps of grids go the way of all others (the oracle)
+    bool sweep = true;      ///< false: forces on grids are evaluated like all others (the oracle)
     bool decompose = true;  ///< false: the whole cloth as one system
     /// J: linearise again, whatever the scheme, until the step's end is met or holds no more energy than
     /// this.
@@ -46,6 +47,9 @@ struct StepWorkspace {
     SolidPoses poses;
     std::vector<std::vector<Touch>> touches_found;  ///< (chunks of particles)
     std::vector<Touch> touches;
+    RowForces rows;              ///< where every cloth is a grid
+    bool rowwise = false;        ///< forces are gathered by it; of `extension` there is only the state
+    std::vector<Vec3> gathered;  ///< (particles) N, what it gathered
     ExtensionForces extension;
     BendLimit bend_limit;
     std::vector<Vec3> bend;      ///< (bend springs) N; empty where they are implicit

@@ -11,13 +11,13 @@ struct Coupling {
     double a;              // h² t
     double scale;          // h² (k_s − t) + h k_d, on ûûᵀ
     double along, across;  // k_s − t and t, on drift
-    const Vec3& u;
+    Vec3 u;
 };
 
 Coupling coupling_of(const SpringFamily& family, std::uint32_t s, double h) {
-    const double k = family.springs->stiffness[s], t = family.forces->transverse[s];
-    return {h * h * t, h * h * (k - t) + h * family.springs->damping[s], k - t, t,
-            family.forces->direction[s]};
+    const auto [u, t] = line_of(family, s);
+    const double k = family.springs->stiffness[s];
+    return {h * h * t, h * h * (k - t) + h * family.springs->damping[s], k - t, t, u};
 }
 
 }  // namespace

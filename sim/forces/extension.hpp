@@ -68,7 +68,22 @@ struct SpringFamily {
     /// (particles) how far a particle moves without the solve from where these springs were evaluated [m];
     /// empty: as the cloth's.
     std::span<const Vec3> drift{};
+    /// (particles) where û and t are to be found anew from [m]; empty: they are in `forces`.
+    std::span<const Vec3> at{};
 };
+
+/// û and t of an implicit spring.
+struct SpringLine {
+    Vec3 u;
+    double t;
+};
+inline SpringLine line_of(const SpringFamily& family, std::uint32_t s) {
+    if (family.at.empty()) return {family.forces->direction[s], family.forces->transverse[s]};
+    const ExtensionSprings& springs = *family.springs;
+    const Vec3 d = family.at[springs.j[s]] - family.at[springs.i[s]];
+    const double length = d.norm(), rest = springs.rest[s];
+    return {d / length, length > rest ? springs.stiffness[s] * (1.0 - rest / length) : 0.0};
+}
 
 /// Which springs are implicit (paper Sec. 3.5): κ = (h/m)(k_s h + 2 k_d), Eq. (7), m the smaller mass. A
 /// spring is explicit where κ ≤ threshold; +∞ makes all explicit, a negative one all implicit.

@@ -56,8 +56,9 @@ struct Loader {
             const std::uint32_t p = out.particle(i, j), q = out.particle(i2, j2);
             const bool p_ours = ours(p), q_ours = ours(q);
             if (p_ours || q_ours) {
-                const double k = family.springs->stiffness[s], t = family.forces->transverse[s];
-                const Vec3& u = family.forces->direction[s];
+                const auto line = line_of(family, s);
+                const Vec3& u = line.u;
+                const double k = family.springs->stiffness[s], t = line.t;
                 const double a = h * h * t, scale = h * h * (k - t) + h * family.springs->damping[s];
                 const double root = std::sqrt(scale);
                 block[0] = static_cast<float>(a);

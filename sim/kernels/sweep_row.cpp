@@ -66,6 +66,63 @@ UNRAVEL_VERSIONS void extension_row(const RowState& a, const RowState& b, double
     }
 }
 
+UNRAVEL_VERSIONS void split_row(const RowState& a, const RowState& b, double rest, const double* stiffness,
+                                const double* damping, const double* is_explicit, const std::uint8_t* taut,
+                                double reach, std::size_t count, const Row& fa, const Row& fb,
+                                SpringState* state) {
+    double force[3][strip];
+    std::int64_t will_be_taut[strip] = {}, kind[strip];
+    const auto [ax, ay, az] = a.x;
+    const auto [bx, by, bz] = b.x;
+    const auto [au, av, aw] = a.v;
+    const auto [bu, bv, bw] = b.v;
+    const double taut_squared = rest * rest, reach_squared = reach * reach;
+    for (std::size_t first = 0; first < count; first += strip) {
+        const std::size_t n = std::min(strip, count - first);
+        if (taut) {
+            for (std::size_t k = 0; k < n; ++k) will_be_taut[k] = taut[first + k];
+        }
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t i = first + k;
+            const double dx = bx[i] - ax[i], dy = by[i] - ay[i], dz = bz[i] - az[i];
+            const double exact = dx * dx + dy * dy + dz * dz;
+            const double squared = std::max(exact, least_square);
+            const double r = inverse_root(squared);
+            const double rate = (dx * (bu[i] - au[i]) + dy * (bv[i] - av[i]) + dz * (bw[i] - aw[i])) * r;
+            const double pull = (stiffness[i] * (squared * r - rest) + damping[i] * rate) * r;
+            const bool is_taut = exact > taut_squared, joins = will_be_taut[k] != 0;
+            const bool implicit = !(is_explicit[i] > 0);
+            const double t = is_taut | (joins & implicit & (exact > 0)) ? pull : 0.0;
+            const bool reached = (exact > reach_squared) | (joins & (exact > 0));
+            force[0][k] = t * dx;
+            force[1][k] = t * dy;
+            force[2][k] = t * dz;
+            kind[k] = implicit & reached ? 2 : (is_taut ? 1 : 0);
+        }
+        if (state) {
+            for (std::size_t k = 0; k < n; ++k) state[first + k] = static_cast<SpringState>(kind[k]);
+        }
+        hand_on(force, first, n, fa, fb);
+    }
+}
+
+UNRAVEL_VERSIONS void mark_row(const ConstRow& a, const ConstRow& b, double rest, std::size_t count,
+                               std::uint8_t* taut) {
+    const auto [ax, ay, az] = a;
+    const auto [bx, by, bz] = b;
+    const double taut_squared = rest * rest;
+    std::int64_t longer[strip];
+    for (std::size_t first = 0; first < count; first += strip) {
+        const std::size_t n = std::min(strip, count - first);
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t i = first + k;
+            const double dx = bx[i] - ax[i], dy = by[i] - ay[i], dz = bz[i] - az[i];
+            longer[k] = dx * dx + dy * dy + dz * dz > taut_squared;
+        }
+        for (std::size_t k = 0; k < n; ++k) taut[first + k] = static_cast<std::uint8_t>(longer[k]);
+    }
+}
+
 UNRAVEL_VERSIONS void bend_row(const RowState& a, const RowState& b, double rest, const double* arc,
                                const double* slope, const double* crossing, std::size_t count, const Row& fa,
                                const Row& fb) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 
+#include "sim/forces/extension.hpp"
 #include "sim/math.hpp"
 
 namespace unravel {
@@ -30,6 +31,19 @@ inline Row from(const Row& row, std::ptrdiff_t column) {
 ///   stiffness, damping  (springs) N/m, N·s/m;  rest  m
 void extension_row(const RowState& a, const RowState& b, double rest, const double* stiffness,
                    const double* damping, std::size_t count, const Row& fa, const Row& fb);
+
+/// The same, and what each spring does in an implicit–explicit step (paper Sec. 3.5), as extension_forces()
+/// has it.
+///   is_explicit  (springs) 1 where κ is within the threshold, else 0
+///   taut         (springs) 1: will be taut at the step's end; or null
+///   reach        m, length up to which a slack spring that is implicit stays inactive, (1 − band) L
+///   state        (springs) written; null where another does
+void split_row(const RowState& a, const RowState& b, double rest, const double* stiffness,
+               const double* damping, const double* is_explicit, const std::uint8_t* taut, double reach,
+               std::size_t count, const Row& fa, const Row& fb, SpringState* state);
+
+/// Marks springs longer than L: taut[i] = 1 where the ends' distance is, 0 elsewhere.
+void mark_row(const ConstRow& a, const ConstRow& b, double rest, std::size_t count, std::uint8_t* taut);
 
 /// The same for bend springs (sim/forces/bend.hpp): `arc` is 4 k_b/L² [N], `slope` the limited c_b [N/m],
 /// `crossing` the length below which the arc's push is the weaker [m].

@@ -87,13 +87,12 @@ bool ExplicitSweep::prepare(const ClothModel& model, const BendLimit& limit, dou
     for (const ClothPatch& patch : model.cloths) covered += patch.count();
     memory.fits = covered == model.size() && !model.has_temporary_springs() &&
                   std::none_of(model.solids.begin(), model.solids.end(), is_mesh);
+    auto grid = model.grids.begin();
     for (std::size_t k = 0; memory.fits && k < model.cloths.size(); ++k) {
-        SweptCloth& cloth = memory.cloths.emplace_back();
-        cloth.patch = model.cloths[k];
-        // A narrow tube's springs reach round it.
-        memory.fits = cloth.patch.grid() && !(cloth.patch.tube && cloth.patch.particles[0] <= 4) &&
-                      build_tables(model, cloth.patch, limit, cloth.tables);
-        cloth.stride = (cloth.columns() + 2 * seam_margin + 7) / 8 * 8;
+        memory.fits = is_swept(model.cloths[k]);
+        if (!memory.fits) break;
+        SweptCloth& cloth = memory.cloths.emplace_back(model.cloths[k]);
+        build_tables(model, *grid++, limit, cloth.tables);
         if (!model.solids.empty())
             cloth.stretches = (cloth.columns() + contact_columns - 1) / contact_columns;
         place_pins(model, cloth);
@@ -111,7 +110,6 @@ void ExplicitSweep::run(const ClothModel& model, const ClothState& state, int su
         memory.passed = std::make_unique<std::atomic<std::size_t>[]>(memory.groups);
     }
     for (SweptCloth& cloth : memory.cloths) {
-        cloth.state.resize(cloth.rows() * 6 * cloth.stride);
         cloth.contacts.resize(cloth.rows() * cloth.stretches);
         take_state(state, cloth);
     }

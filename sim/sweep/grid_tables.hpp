@@ -55,9 +55,32 @@ inline std::size_t family_columns(const ClothPatch& patch, const GridFamily& fam
     return columns > 0 ? static_cast<std::size_t>(columns) : 0;
 }
 
-/// The tables of one cloth for a step size whose bend limit is `limit`. False where its springs are not a
-/// grid's: then there is nothing to sweep.
-bool build_tables(const ClothModel& model, const ClothPatch& patch, const BendLimit& limit,
+/// Whether a cloth's springs can be taken family by family: a narrow tube's reach round it.
+inline bool is_swept(const ClothPatch& patch) {
+    return patch.grid() && !(patch.tube && patch.particles[0] <= 4);
+}
+
+/// A cloth's springs in a family's place: (directions of extension_families, and of bend_families).
+inline std::array<const SpringRows*, 4> extension_rows(const GridSprings& grid) {
+    return {&grid.u, &grid.v, &grid.diagonal, &grid.anti};
+}
+inline std::array<const SpringRows*, 4> bend_rows(const GridSprings& grid) {
+    return {&grid.bend_u, &grid.bend_v, &grid.bend_diagonal, &grid.bend_anti};
+}
+
+/// The tables of one cloth for a step size whose bend limit is `limit`.
+void build_tables(const ClothModel& model, const GridSprings& grid, const BendLimit& limit,
                   GridTables& tables);
+
+/// A table over the springs of one family: f(spring), zero where a base column has none.
+template <typename F>
+void tabulate(const GridSprings& grid, const SpringRows& rows, const F& f, RowTable& table) {
+    std::vector<double> values(grid.count(), 0.0);
+    for (std::uint32_t j = 0; j < rows.rows; ++j) {
+        for (std::uint32_t i = 0; i < rows.per_row; ++i)
+            values[static_cast<std::size_t>(j) * grid.nu + i] = f(rows.at(i, j));
+    }
+    table.build(values, grid.nu);
+}
 
 }  // namespace unravel

@@ -54,17 +54,7 @@ void plan_substeps(const ClothModel& model, double t, double h, int count, std::
 }
 
 void take_state(const ClothState& state, SweptCloth& cloth) {
-    tbb::parallel_for(std::size_t{0}, cloth.rows(), [&](std::size_t row) {
-        const std::size_t first = cloth.patch.first + row * cloth.columns();
-        const Row x = cloth.x(row), v = cloth.v(row);
-        for (std::size_t i = 0; i < cloth.columns(); ++i) {
-            for (std::size_t c = 0; c < 3; ++c) {
-                x[c][i] = state.x[first + i][static_cast<Eigen::Index>(c)];
-                v[c][i] = state.v[first + i][static_cast<Eigen::Index>(c)];
-            }
-        }
-        cloth.repeat_over_seam(row);
-    });
+    take_rows(state.x, state.v, cloth);
     if (cloth.stretches == 0) return;
     for (RowContacts& contacts : cloth.contacts) {
         contacts.clearance = -1;

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "sim/stage.hpp"
 #include "tests/sim/scenes.hpp"
 
 using namespace unravel;
@@ -33,8 +34,7 @@ TEST_CASE("at every step the decomposed solution meets the whole system's tolera
         // The very same system undecomposed: residual of the decomposed solution in the stopping rule's norm.
         Components whole;
         whole_cloth(simulation.model.size(), whole);
-        const SpringFamily families[] = {
-            {&simulation.model.springs, &simulation.model.spring_adjacency, &ws.extension}};
+        const Families families = families_of(simulation.model, ws);
         const Load load{simulation.model.mass, ws.impulse, ws.drift};
         System system, parts;
         assemble(families, load, whole, ws.constraints, 0.005, system);

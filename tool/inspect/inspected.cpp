@@ -9,6 +9,28 @@
 
 namespace unravel {
 
+namespace {
+
+// The step gathers forces by particle; what each spring put in is evaluated again.
+std::vector<Vec3> forces_of(const InspectedStep& step) {
+    const Simulation& simulation = step.simulation;
+    const StepWorkspace& ws = simulation.ws;
+    const StepOptions& options = simulation.options;
+    const Integrator used = options.integrator == Integrator::automatic ? ws.chosen : options.integrator;
+    const Splitting splitting = scheme_of(used).splitting(options.threshold);
+    const bool coupled = used != Integrator::explicit_;  // a swept step leaves no stage behind
+    const std::vector<Vec3>&x = coupled ? ws.stage.x_at : step.before.x,
+          &v = coupled ? ws.stage.v_at : step.before.v;
+    ExtensionForces forces;
+    extension_forces(simulation.model.springs, simulation.model.mass, x, v, step.report.h, splitting,
+                     options.activation_band, forces,
+                     coupled ? std::span<const std::uint8_t>(ws.taut) : std::span<const std::uint8_t>(),
+                     coupled ? std::span<const Vec3>(ws.ahead) : std::span<const Vec3>());
+    return forces.force;
+}
+
+}  // namespace
+
 InspectedStep inspect_step(const Scene& scene, const RunFolder& folder, int frame, int step) {
     InspectedStep out;
     out.frame = frame;
@@ -41,6 +63,7 @@ InspectedStep inspect_step(const Scene& scene, const RunFolder& folder, int fram
     out.colors = colors.assign(out.record.component, edges);
     out.components =
         component_table(model, out.record.component, out.record.springs, out.record.solves, out.colors);
+    out.spring_force = forces_of(out);
     const ExtensionSprings& springs = model.springs;
     out.kappa.resize(springs.size());
     for (std::size_t s = 0; s < springs.size(); ++s) {

@@ -17,8 +17,9 @@ struct InspectedStep {
     Simulation simulation;  ///< after the step; its workspace is the step's
     FrameRecord record;     ///< what a frame record would say of the step
     StepReport report;
-    std::vector<Rgb> colors;    ///< (particles) as in the clip
-    std::vector<double> kappa;  ///< (stretch and shear springs) κ of Eq. (7)
+    std::vector<Rgb> colors;         ///< (particles) as in the clip
+    std::vector<double> kappa;       ///< (stretch and shear springs) κ of Eq. (7)
+    std::vector<Vec3> spring_force;  ///< (stretch and shear springs) on i, where the step took forces [N]
     std::vector<ComponentRow> components;
 };
 

@@ -105,7 +105,7 @@ Json spring_numbers(const InspectedStep& step, std::int64_t spring) {
             {"kappa", step.kappa[s]},
             {"threshold", step.simulation.options.threshold},
             {"state", spring_state_name(step.record.springs[s])},
-            {"force", vector_json(step.simulation.ws.extension.force[s])}};
+            {"force", vector_json(step.spring_force[s])}};
 }
 
 Json particle_numbers(const InspectedStep& step, std::int64_t particle) {
