@@ -130,7 +130,7 @@ double energy_at_end(const ClothModel& model, StepWorkspace& ws) {
 Families families_of(const ClothModel& model, const StepWorkspace& ws) {
     Families families;
     const auto add = [&](const SpringFamily& family) { families.list[families.count++] = family; };
-    const std::span<const Vec3> at = ws.rowwise ? ws.stage.x_at : std::span<const Vec3>{};
+    const std::span<const Vec3> at = ws.ahead.empty() ? ws.stage.x_at : ws.ahead;
     add({&model.springs, &model.spring_adjacency, &ws.extension, {}, at});
     if (model.has_temporary_springs())
         add({&ws.self.springs, &ws.self.adjacency, &ws.self.forces, ws.drift_from_start});

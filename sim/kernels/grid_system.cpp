@@ -1,7 +1,10 @@
 #include "sim/kernels/grid_system.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "sim/kernels/couple_row.hpp"
 
 namespace unravel {
 
@@ -23,106 +26,163 @@ void free_directions(const Mat3& S, double* out) {
 
 // Where things stand while a component is loaded.
 struct Loader {
+    const GridSprings& springs;
     const SpringFamily& family;
     const Load& load;
     const Components& components;
     const Constraints& constraints;
+    std::span<const Vec3> guess;
     double h;
     GridSystem& out;
     int nu, pitch;
     std::int32_t label;
+    int first_row;  ///< of the cloth, that is row 0 here
 
     bool ours(std::uint32_t p) const { return components.label[p] == label; }
     std::ptrdiff_t at(int i, int j, int numbers) const {
         return static_cast<std::ptrdiff_t>(j) * numbers * pitch + margin + i;
     }
-    void add(std::vector<double>& field, int i, int j, const Vec3& v) const {
-        double* const p = field.data() + at(i, j, 3);
-        for (int c = 0; c < 3; ++c) p[c * pitch] += v[c];
-    }
-    // What the neighbour `other` of p in the component, held fully, puts into p's right-hand side.
-    Vec3 pull(std::uint32_t other, double a, double scale, const Vec3& u) const {
-        if (components.label[other] >= 0) return Vec3::Zero();
-        const Vec3& z = constraints.find(other)->z;
-        return a * z + scale * u.dot(z) * u;
-    }
-
-    // One spring from node (i, j) to (i2, j2): its block at `slot` of (column, j), its share of b in rows
-    // [begin, end).
-    void spring(std::uint32_t s, int i, int j, int i2, int j2, float* slot, int begin, int end,
-                double& stiffest) const {
-        float block[4] = {0, 0, 0, 0};
-        if (family.forces->state[s] == SpringState::implicit) {
-            const std::uint32_t p = out.particle(i, j), q = out.particle(i2, j2);
-            const bool p_ours = ours(p), q_ours = ours(q);
-            if (p_ours || q_ours) {
-                const auto line = line_of(family, s);
-                const Vec3& u = line.u;
-                const double k = family.springs->stiffness[s], t = line.t;
-                const double a = h * h * t, scale = h * h * (k - t) + h * family.springs->damping[s];
-                const double root = std::sqrt(scale);
-                block[0] = static_cast<float>(a);
-                for (int c = 0; c < 3; ++c) block[c + 1] = static_cast<float>(root * u[c]);
-                stiffest = std::max(stiffest, (a + scale) / std::min(load.mass[p], load.mass[q]));
-                const Vec3 g = load.drift[q] - load.drift[p];
-                const Vec3 kick = h * (t * g + (k - t) * u.dot(g) * u);
-                if (p_ours && j >= begin && j < end) add(out.b, i, j, kick + pull(q, a, scale, u));
-                if (q_ours && j2 >= begin && j2 < end) add(out.b, i2, j2, pull(p, a, scale, u) - kick);
-            }
-        }
-        if (j < begin) return;
-        for (int c = 0; c < 4; ++c) slot[c * pitch] = block[c];
-    }
 };
 
-// Rows [begin, end): node by node, then the springs that touch them.
-double load_rows(const Loader& l, const GridSprings& g, std::span<const Vec3> guess, int first_row, int begin,
-                 int end) {
-    GridSystem& out = l.out;
-    for (int j = begin; j < end; ++j) {
-        std::fill_n(out.b.data() + l.at(-margin, j, 3), 3 * l.pitch, 0.0);
-        std::fill_n(out.x.data() + l.at(-margin, j, 3), 3 * l.pitch, 0.0);
-        for (int i = 0; i < l.nu; ++i) {
-            const std::uint32_t p = out.particle(i, j);
-            const Constraint* c = l.constraints.find(p);
-            std::int32_t& slot = out.slot[static_cast<std::size_t>(l.at(i, j, 1))];
-            float& mass = out.mass[static_cast<std::size_t>(l.at(i, j, 1))];
-            const Vec3& y = guess[p];
-            // Others share no spring with the component, or are held and in b already: their x is 0.
-            if (!l.ours(p)) {
-                mass = 0;
-                continue;
+constexpr std::array<const SpringRows GridSprings::*, 4> families{&GridSprings::u, &GridSprings::v,
+                                                                  &GridSprings::diagonal, &GridSprings::anti};
+
+// Two rows at a time, one array per number, as kernels along rows want them; with the columns past a tube's
+// seam.
+class TurnedRows {
+public:
+    static constexpr std::size_t numbers = 11;  // x, drift, what springs pull by; ours, mass
+    explicit TurnedRows(const Loader& l) : l_(l), stride_(static_cast<std::size_t>(l.nu) + 1) {
+        thread_local std::vector<double> memory;
+        memory.resize(2 * numbers * stride_);
+        memory_ = memory.data();
+    }
+    void turn(int j) {
+        held_[j & 1] = false;
+        for (int i = 0; i < l_.nu; ++i) {
+            const std::uint32_t p = l_.out.particle(i, j);
+            for (int c = 0; c < 3; ++c) {
+                row(j, c)[i] = l_.family.at[p][c];
+                row(j, 3 + c)[i] = l_.load.drift[p][c];
             }
-            mass = static_cast<float>(l.load.mass[p]);
-            slot = !c ? free_slot : c->free == 0 ? masked_slot : slot;
-            l.add(out.x, i, j, c ? Vec3(c->S * y + (c->z - c->S * c->z)) : y);
-            l.add(out.b, i, j, l.load.impulse[p]);
+            row(j, 9)[i] = l_.ours(p);
+            row(j, 10)[i] = l_.load.mass[p];
+            held_[j & 1] = held_[j & 1] || l_.components.label[p] < 0;
         }
-        float* const active = out.active.data() + l.at(0, j, 1);
-        for (int i = 0; i < l.nu; ++i)
-            active[i] = out.slot[static_cast<std::size_t>(l.at(i, j, 1))] == masked_slot ? 0.0f : 1.0f;
-        if (out.grid.tube) {
-            active[-1] = active[l.nu - 1];
-            active[l.nu] = active[0];
+        for (int k = 0; k < static_cast<int>(numbers); ++k) row(j, k)[l_.nu] = row(j, k)[0];
+        for (int c = 0; c < 3; ++c) std::fill_n(pull(j)[static_cast<std::size_t>(c)], stride_, 0.0);
+    }
+    RowEnd end(int j) const {
+        return {{row(j, 0), row(j, 1), row(j, 2)}, {row(j, 3), row(j, 4), row(j, 5)}, row(j, 9), row(j, 10)};
+    }
+    Row pull(int j) const { return {row(j, 6), row(j, 7), row(j, 8)}; }
+    bool any_held(int j) const { return held_[j & 1]; }
+    // What the column past the seam got is the first one's.
+    void fold(int j) const {
+        for (double* const y : pull(j)) y[0] += l_.out.grid.tube ? y[l_.nu] : 0.0;
+    }
+
+private:
+    double* row(int j, int number) const {
+        return memory_ +
+               (static_cast<std::size_t>(j & 1) * numbers + static_cast<std::size_t>(number)) * stride_;
+    }
+    const Loader& l_;
+    std::size_t stride_;
+    double* memory_;
+    std::array<bool, 2> held_{false, false};
+};
+
+// What neighbours that are held, and move as they must, put into the right-hand side of ours.
+void add_held(const Loader& l, const SpringRows& rows, int j, TurnedRows& turned) {
+    const int from_i = static_cast<int>(rows.from[0]), to_i = static_cast<int>(rows.to[0]);
+    const int other_j = j + static_cast<int>(rows.to[1]);
+    for (std::uint32_t k = 0; k < rows.per_row; ++k) {
+        const int i = static_cast<int>(k) + from_i, other_i = static_cast<int>(k) + to_i;
+        const std::uint32_t p = l.out.particle(i % l.nu, j), q = l.out.particle(other_i % l.nu, other_j);
+        const std::uint32_t s = rows.at(k, static_cast<std::uint32_t>(l.first_row + j));
+        if (l.ours(p) == l.ours(q) || l.family.forces->state[s] != SpringState::implicit) continue;
+        const std::uint32_t held = l.ours(p) ? q : p;
+        if (l.components.label[held] >= 0) continue;
+        const auto [u, t] = line_of(l.family, s);
+        const double stiffness = l.family.springs->stiffness[s];
+        const double scale = l.h * l.h * (stiffness - t) + l.h * l.family.springs->damping[s];
+        const Vec3& z = l.constraints.find(held)->z;
+        const Vec3 pull = l.h * l.h * t * z + scale * u.dot(z) * u;
+        const Row to = from(turned.pull(l.ours(p) ? j : other_j), l.ours(p) ? i : other_i);
+        for (std::size_t c = 0; c < 3; ++c) *to[c] += pull[static_cast<Eigen::Index>(c)];
+    }
+}
+
+// All springs that begin in a row; their blocks only where it is one of the band's.
+double couple(const Loader& l, int j, bool ours, TurnedRows& turned) {
+    const ExtensionSprings& springs = *l.family.springs;
+    double stiffest = 0;
+    for (std::size_t f = 0; f < families.size(); ++f) {
+        const SpringRows& rows = l.springs.*families[f];
+        const int down = static_cast<int>(rows.to[1]);
+        if (l.first_row + j >= static_cast<int>(rows.rows) || j + down >= l.out.grid.nv || rows.per_row == 0)
+            continue;
+        if (!ours && down == 0) continue;
+        const auto from_i = static_cast<std::ptrdiff_t>(rows.from[0]),
+                   to_i = static_cast<std::ptrdiff_t>(rows.to[0]);
+        const std::uint32_t s = rows.at(0, static_cast<std::uint32_t>(l.first_row + j));
+        float* const blocks = l.out.couplings.data() + l.at(0, j, 16) + 4 * static_cast<int>(f) * l.pitch;
+        const double most =
+            couple_row(turned.end(j).from(from_i), turned.end(j + down).from(to_i), springs.rest[s],
+                       springs.stiffness.data() + s, springs.damping.data() + s,
+                       l.family.forces->state.data() + s, l.h, rows.per_row, from(turned.pull(j), from_i),
+                       from(turned.pull(j + down), to_i), ours ? blocks : nullptr, l.pitch);
+        stiffest = std::max(stiffest, most);
+        if (turned.any_held(j) || turned.any_held(j + down)) add_held(l, rows, j, turned);
+    }
+    return stiffest;
+}
+
+// What nodes have by themselves.
+void load_nodes(const Loader& l, int j, const TurnedRows& turned) {
+    GridSystem& out = l.out;
+    std::fill_n(out.b.data() + l.at(-margin, j, 3), 3 * l.pitch, 0.0);
+    std::fill_n(out.x.data() + l.at(-margin, j, 3), 3 * l.pitch, 0.0);
+    turned.fold(j);
+    const Row pull = turned.pull(j);
+    float* const active = out.active.data() + l.at(0, j, 1);
+    for (int i = 0; i < l.nu; ++i) {
+        const std::uint32_t p = out.particle(i, j);
+        std::int32_t& slot = out.slot[static_cast<std::size_t>(l.at(i, j, 1))];
+        float& mass = out.mass[static_cast<std::size_t>(l.at(i, j, 1))];
+        // Others share no spring with the component, or are held and in b already: their x is 0.
+        mass = 0;
+        active[i] = 0;
+        if (!l.ours(p)) continue;
+        const Constraint* c = l.constraints.find(p);
+        mass = static_cast<float>(l.load.mass[p]);
+        slot = !c ? free_slot : c->free == 0 ? masked_slot : slot;
+        active[i] = slot == masked_slot ? 0.0f : 1.0f;
+        const Vec3& y = l.guess[p];
+        const Vec3 x = c ? Vec3(c->S * y + (c->z - c->S * c->z)) : y;
+        for (int k = 0; k < 3; ++k) {
+            out.x[static_cast<std::size_t>(l.at(i, j, 3) + k * l.pitch)] = x[k];
+            out.b[static_cast<std::size_t>(l.at(i, j, 3) + k * l.pitch)] =
+                l.load.impulse[p][k] + pull[static_cast<std::size_t>(k)][i];
         }
     }
+    if (out.grid.tube) {
+        active[-1] = active[l.nu - 1];
+        active[l.nu] = active[0];
+    }
+}
+
+// Rows [begin, end).
+double load_rows(const Loader& l, int begin, int end) {
+    TurnedRows turned(l);
     double stiffest = 0;
-    const SpringRows* const families[] = {&g.u, &g.v, &g.diagonal, &g.anti};
-    for (int j = std::max(begin - 1, 0); j < end; ++j) {
-        for (int f = 0; f < 4; ++f) {
-            const SpringRows& rows = *families[f];
-            const int from_i = static_cast<int>(rows.from[0]), to_i = static_cast<int>(rows.to[0]);
-            const int down = static_cast<int>(rows.to[1]);
-            if (first_row + j >= static_cast<int>(rows.rows) || j + down >= out.grid.nv) continue;
-            float* const base = out.couplings.data() + l.at(0, j, 16) + 4 * f * l.pitch;
-            const auto s0 = rows.at(0, static_cast<std::uint32_t>(first_row + j));
-            for (int k = 0; k < static_cast<int>(rows.per_row); ++k) {
-                const int i = k + from_i < l.nu ? k + from_i : k + from_i - l.nu;
-                const int i2 = k + to_i < l.nu ? k + to_i : k + to_i - l.nu;
-                l.spring(s0 + static_cast<std::uint32_t>(k), i, j, i2, j + down, base + k, begin, end,
-                         stiffest);
-            }
-        }
+    const int before = std::max(begin - 1, 0);
+    turned.turn(before);
+    for (int j = before; j < end; ++j) {
+        if (j + 1 < l.out.grid.nv) turned.turn(j + 1);
+        stiffest = std::max(stiffest, couple(l, j, j >= begin, turned));
+        if (j >= begin) load_nodes(l, j, turned);
     }
     return stiffest;
 }
@@ -173,7 +233,18 @@ void load_grid_system(const GridSprings& springs, const SpringFamily& family, co
         out.P.assign(out.field(6), 0.0f);
     }
     out.slot.assign(out.field(1), masked_slot);
-    Loader loader{family, load, components, constraints, h, out, g.nu, g.pitch, static_cast<std::int32_t>(c)};
+    const Loader loader{springs,
+                        family,
+                        load,
+                        components,
+                        constraints,
+                        guess,
+                        h,
+                        out,
+                        g.nu,
+                        g.pitch,
+                        static_cast<std::int32_t>(c),
+                        static_cast<int>(first_row)};
 
     // Directions are numbered in the order of the constraints, which no thread changes.
     out.directions.clear();
@@ -189,8 +260,7 @@ void load_grid_system(const GridSprings& springs, const SpringFamily& family, co
     const RowBands bands(g);
     std::vector<double> stiffest(static_cast<std::size_t>(bands.count));
     tbb::parallel_for(0, bands.count, [&](int band) {
-        stiffest[static_cast<std::size_t>(band)] = load_rows(
-            loader, springs, guess, static_cast<int>(first_row), bands.begin(band), bands.end(band));
+        stiffest[static_cast<std::size_t>(band)] = load_rows(loader, bands.begin(band), bands.end(band));
     });
     out.stiffest = *std::max_element(stiffest.begin(), stiffest.end());
     g.couplings = out.couplings.data();

@@ -45,7 +45,8 @@ struct RowBands {
     int end(int band) const { return begin(band) + rows < all ? begin(band) + rows : all; }
 };
 
-/// Fills `out` with component c, whose particles all belong to `springs`. `guess` is (particles) [m/s].
+/// Fills `out` with component c, whose particles all belong to `springs`; the family says where its springs
+/// are linearised (`at`). `guess` is (particles) [m/s].
 void load_grid_system(const GridSprings& springs, const SpringFamily& family, const Load& load,
                       const Components& components, std::uint32_t c, const Constraints& constraints,
                       std::span<const Vec3> guess, double h, GridSystem& out);

@@ -40,7 +40,7 @@ struct Sheet {
     ExtensionForces forces;
     Constraints constraints;
     Components components;
-    std::vector<Vec3> impulse, drift, guess;
+    std::vector<Vec3> impulse, drift, guess, at;
     std::uint64_t draw = 0;
     static constexpr double h = 0.005;
 
@@ -62,12 +62,10 @@ struct Sheet {
             drift.push_back(1e-4 * vector());
             guess.push_back(0.05 * vector());
         }
-        forces.resize(model.springs.size());
+        // Stretched, bent every way, here and there slack.
+        for (const Vec3& x : placement.x) at.push_back(1.03 * x + 0.05 * model.springs.rest[0] * vector());
+        forces.state.resize(model.springs.size());
         for (std::size_t s = 0; s < model.springs.size(); ++s) {
-            forces.direction[s] = (placement.x[model.springs.j[s]] - placement.x[model.springs.i[s]] +
-                                   0.2 * model.springs.rest[s] * vector())
-                                      .normalized();
-            forces.transverse[s] = 0.02 * model.springs.stiffness[s] * (1 + uniform());
             forces.state[s] = 0.5 * (1 + uniform()) < slack ? SpringState::inactive : SpringState::implicit;
         }
         constraints.reset(n);
@@ -91,7 +89,7 @@ struct Sheet {
         std::vector<std::uint32_t> scratch;
         find_components(n, families(), constraints, scratch, components);
     }
-    SpringFamily family() const { return {&model.springs, &model.spring_adjacency, &forces}; }
+    SpringFamily family() const { return {&model.springs, &model.spring_adjacency, &forces, {}, at}; }
     std::vector<SpringFamily> families() const { return {family()}; }
     Load load() const { return {model.mass, impulse, drift}; }
 };
