@@ -1,4 +1,4 @@
-// unravel schema scene|keys|run|stats: what the tool's files hold, for editors, programs and readers.
+// unravel schema scene|keys|run|bench|stats: what the tool's files hold, for editors, programs and readers.
 
 #include <fmt/format.h>
 
@@ -32,6 +32,8 @@ int command_schema(const Options& options) {
         fmt::print("{}", scene_reference());
     } else if (options.what == "run") {
         fmt::print("{}", page_file("run.schema.json"));
+    } else if (options.what == "bench") {
+        fmt::print("{}", page_file("bench.schema.json"));
     } else if (options.json) {
         fmt::print("{}\n", stats_list().dump(2));
     } else {

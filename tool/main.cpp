@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "tool/bench/command_speed.hpp"
 #include "tool/bench/frames.hpp"
 #include "tool/cluster/cluster.hpp"
 #include "tool/guarded.hpp"
@@ -226,25 +227,46 @@ int main(int argc, char** argv) {
     reproduce->add_option("-o", options.output, "folder of the report (default: output/reproduce)");
     reproduce->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
         ->capture_default_str();
-    bool frames_bench = true;  // the only one so far
-    CLI::App* bench =
-        command("bench", "what pictures cost, each stage alone and all together",
-                [](const Options& o) { return o.cluster.submit ? send_bench(o) : command_bench_frames(o); });
-    bench->add_flag("--frames", frames_bench, "simulation, drawing, PNG and mp4 of both views");
-    bench->add_option("scene", options.scene, "scene file (default: drape_sphere)");
-    bench->add_option("--set", options.overrides, "key=value: another value for a key of the scene")
+    bool frames_bench = false;
+    CLI::App* bench = command("bench", "how fast it is by size, beside other solvers; or what pictures cost",
+                              command_bench_speed);
+    bench->add_option("scene", options.scene,
+                      "scene file whose cloth is refined (default: hang; with --frames drape_sphere)");
+    bench->add_option("-o", options.output, "folder for tables, plots and records (default: output/bench)");
+    bench->add_option("--sizes", options.sizes,
+                      "numbers of particles with commas between (default: 2500,10000,40000)");
+    bench
+        ->add_option("--budget", options.budget,
+                     "minutes that it may take: repeats are cut, then slow rivals")
+        ->check(CLI::Range(0.01, 10000.0))
+        ->capture_default_str();
+    CLI::Option* frames = bench->add_flag(
+        "--frames", frames_bench,
+        "what pictures cost instead: simulation, drawing, PNG and mp4 of both views, each alone "
+        "and all together");
+    bench->get_option("--sizes")->excludes(frames);
+    bench
+        ->add_option("--set", options.overrides,
+                     "key=value: another value for a key of the scene; repeatable")
         ->allow_extra_args(false);
     bench->add_option("--threads", options.threads, "threads of the simulation (default: one per processor)")
         ->check(CLI::Range(1, 1024));
     bench->add_option("--device", options.device, "auto, gpu, software or the number of an EGL device")
+        ->needs(frames)
         ->capture_default_str();
+    bench->callback([&] {
+        chosen = [&] {
+            if (options.cluster.submit) return send_bench(options);
+            return frames_bench ? command_bench_frames(options) : command_bench_speed(options);
+        };
+    });
     add_submission_options(*bench, options);
     CLI::App* schema = command("schema", "what files hold, for editors and programs", command_schema);
     schema
-        ->add_option(
-            "what", options.what,
-            "scene or run (JSON schemas), keys (the scene's, as Markdown), stats (columns of stats.csv)")
-        ->check(CLI::IsMember({"scene", "keys", "run", "stats"}))
+        ->add_option("what", options.what,
+                     "scene, run or bench (JSON schemas), keys (the scene's, as Markdown), stats (columns of "
+                     "stats.csv)")
+        ->check(CLI::IsMember({"scene", "keys", "run", "bench", "stats"}))
         ->required();
     CLI::App* check = takes(command("check", "what is wrong with a scene, or what would run", command_check),
                             "SCENE", "scene file");

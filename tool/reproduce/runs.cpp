@@ -142,9 +142,4 @@ Components components_of(const FrameRecord& record) {
     return out;
 }
 
-Spread spread_of(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return {values[values.size() / 2], values.front(), values.back()};
-}
-
 }  // namespace unravel

@@ -6,6 +6,7 @@
 
 #include "render/draw_scene.hpp"
 #include "sim/simulate.hpp"
+#include "tool/spread.hpp"
 
 namespace unravel {
 
@@ -51,11 +52,5 @@ std::vector<Rgb> colors_at(const SceneRun& run, int frame);
 
 /// The components that a record's particles name.
 Components components_of(const FrameRecord& record);
-
-/// Median, and the whole spread, of repeated measurements.
-struct Spread {
-    double median = 0, low = 0, high = 0;
-};
-Spread spread_of(std::vector<double> values);
 
 }  // namespace unravel

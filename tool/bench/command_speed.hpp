@@ -1,0 +1,11 @@
+#pragma once
+
+#include "tool/options.hpp"
+
+namespace unravel {
+
+/// `unravel bench [SCENE]`: measures and prints how fast the scene, hang by default, is simulated by size,
+/// and leaves tables, plots and records in a folder.
+int command_bench_speed(const Options& options);
+
+}  // namespace unravel

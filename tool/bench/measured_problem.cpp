@@ -1,0 +1,150 @@
+#include "tool/bench/measured_problem.hpp"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+namespace unravel {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// One component in place of many; the others stand aside like particles that are held. No implicit spring
+// joins them to it.
+Components only_largest(const Components& all) {
+    Components out;
+    out.label.assign(all.label.size(), -1);
+    std::size_t c = 0;
+    for (std::size_t k = 1; k < all.count(); ++k) c = all.size(k) > all.size(c) ? k : c;
+    const auto begin = all.order.begin() + all.start[c], end = all.order.begin() + all.start[c + 1];
+    out.order.assign(begin, end);
+    out.order.insert(out.order.end(), all.order.begin(), begin);
+    out.order.insert(out.order.end(), end, all.order.end());
+    out.start = {0, all.size(c)};
+    for (std::uint32_t k = 0; k < out.start[1]; ++k) out.label[out.order[k]] = 0;
+    return out;
+}
+
+}  // namespace
+
+MeasuredProblem::MeasuredProblem(const Scene& scene, double start, int threads)
+    : simulation_(start_simulation(scene)) {
+    simulation_.options.solve.preconditioner = Preconditioner::automatic;
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+        while (simulation_.state.t < start) next_step(simulation_);
+    });
+    h_ = 1.0 / (simulation_.fps * simulation_.steps_per_frame);
+    start_ = simulation_.state;
+    if (simulation_.options.integrator == Integrator::automatic ||
+        simulation_.options.integrator == Integrator::explicit_)
+        simulation_.options.integrator = Integrator::adaptive_imex;
+    simulation_.options.measure = false;
+}
+
+MeasuredProblem::Steps MeasuredProblem::run_steps(const StepKind& kind, int count) {
+    StepOptions options = simulation_.options;
+    options.integrator = kind.integrator;
+    options.solve.preconditioner = kind.preconditioner;
+    options.decompose = kind.decompose;
+    options.substeps = 0;
+    ClothState state = start_;
+    Steps out;
+    tbb::task_arena arena(kind.threads);
+    arena.execute([&] {
+        step(simulation_.model, options, h_, state, simulation_.ws);
+        for (int k = 0; k < count; ++k) {
+            const auto start = Clock::now();
+            const StepReport report = step(simulation_.model, options, h_, state, simulation_.ws);
+            out.seconds += since(start) / count;
+            out.stages += report.times;
+            out.substeps += static_cast<double>(report.substeps) / count;
+            out.iterations += static_cast<double>(report.cg_iterations_max) / count;
+        }
+    });
+    for (double StageTimes::*slot :
+         {&StageTimes::contact, &StageTimes::collision, &StageTimes::air, &StageTimes::forces,
+          &StageTimes::graph, &StageTimes::assembly, &StageTimes::solve, &StageTimes::advance})
+        out.stages.*slot /= count;
+    return out;
+}
+
+void MeasuredProblem::capture(int threads) {
+    StepWorkspace& ws = simulation_.ws;
+    ClothState state = start_;
+    guess_ = state.dv;
+    tbb::task_arena arena(threads);
+    const StepReport report =
+        arena.execute([&] { return step(simulation_.model, simulation_.options, h_, state, ws); });
+    constrained_ = report.constrained;
+    families_ = families_of(simulation_.model, ws);
+    load_ = {simulation_.model.mass, ws.impulse, ws.drift};
+    largest_ = only_largest(ws.components);
+}
+
+StepSystem MeasuredProblem::system(const Components& components) const {
+    const StepWorkspace& ws = simulation_.ws;
+    return {simulation_.model.grids, families_, load_, components, ws.constraints, guess_, ws.stage.h};
+}
+
+MeasuredProblem::Solve MeasuredProblem::solve(const Components& components, const SolveOptions& options,
+                                              int threads) {
+    StepWorkspace& ws = simulation_.ws;
+    const StepSystem step = system(components);
+    Solve out;
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+        const auto start = Clock::now();
+        assemble_components(step, options, ws.grid_solves, ws.system);
+        out.set_up = since(start);
+        solve_components(step, options, ws.grid_solves, ws.system, ws.solve, ws.solves);
+        out.seconds = since(start);
+    });
+    for (const ComponentSolve& s : ws.solves) {
+        out.rvm += s.rvm;
+        out.iterations = std::max<double>(out.iterations, s.iterations);
+    }
+    return out;
+}
+
+MeasuredProblem::Solve MeasuredProblem::solve(const SolveOptions& options, int threads) {
+    return solve(simulation_.ws.components, options, threads);
+}
+
+MeasuredProblem::Solve MeasuredProblem::solve_largest(const SolveOptions& options, int threads) {
+    return solve(largest_, options, threads);
+}
+
+std::vector<Vec3> MeasuredProblem::solution() const {
+    const Components& components = simulation_.ws.components;
+    std::vector<Vec3> dv(components.order.size());
+    for (std::size_t row = 0; row < dv.size(); ++row) dv[components.order[row]] = simulation_.ws.solve.x[row];
+    return dv;
+}
+
+const GridSystem* MeasuredProblem::grid() const {
+    const GridSolves& solves = simulation_.ws.grid_solves;
+    const GridSystem* largest = nullptr;
+    for (std::size_t k = 0; k < solves.plan.on_grid.size(); ++k) {
+        const GridSystem& system = solves.grids[k]->system;
+        if (solves.grids[k]->solved && (!largest || system.rows > largest->rows)) largest = &system;
+    }
+    return largest && largest->rows == simulation_.ws.components.largest() ? largest : nullptr;
+}
+
+FoldedSystem MeasuredProblem::folded() {
+    StepWorkspace& ws = simulation_.ws;
+    const StepSystem step = system(ws.components);
+    assemble(step.families, step.load, step.components, step.constraints, step.h, ws.system);
+    const std::uint32_t rows = ws.components.start.back();
+    rows_ = rows;
+    entries_ = ws.system.start[rows];
+    return fold(step, ws.system);
+}
+
+}  // namespace unravel
