@@ -37,7 +37,7 @@ MeasuredProblem::MeasuredProblem(const Scene& scene, double start, int threads)
     simulation_.options.solve.preconditioner = Preconditioner::automatic;
     tbb::task_arena arena(threads);
     arena.execute([&] {
-        while (simulation_.state.t < start) next_step(simulation_);
+        while (simulation_.state.t < start) report_ = next_step(simulation_);
     });
     h_ = 1.0 / (simulation_.fps * simulation_.steps_per_frame);
     start_ = simulation_.state;

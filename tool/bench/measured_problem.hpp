@@ -33,6 +33,8 @@ public:
 
     const Simulation& simulation() const { return simulation_; }
     double h() const { return h_; }
+    /// Of the step that led to the state.
+    const StepReport& report() const { return report_; }
 
     /// Seconds and report of each of `count` steps from the state, after one that is not counted.
     struct Steps {
@@ -73,6 +75,7 @@ private:
     Simulation simulation_;
     ClothState start_;
     double h_ = 0;
+    StepReport report_;
     std::vector<Vec3> guess_;
     Families families_;
     Load load_;

@@ -101,7 +101,7 @@ MemoryRecord account_memory(const Simulation& simulation, double peak) {
     add("forces of air", bytes(w.air));
     add("base, drift, impulse and other vectors",
         bytes(w.ahead, w.drift_from_start, w.base, w.friction, w.impulse, w.drift, w.end, w.guess, w.dv,
-              w.reaction, w.taut));
+              w.gathered, w.reaction, w.taut));
     add("self-collision", bytes(w.self.springs) + bytes(w.self.forces) + bytes(w.self.adjacency) +
                               bytes(w.self.candidate_i, w.self.candidate_j, w.self.x_searched,
                                     w.self.voxel_start, w.self.voxel_particles, w.self.voxel_of));

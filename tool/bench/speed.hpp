@@ -63,7 +63,8 @@ struct SizeRecord {
     std::array<int, 2> grid{0, 0};
     double rows = 0;  ///< of the system that was solved
     std::uint32_t components = 0, largest = 0, constrained = 0;
-    double step = 0, start = 0;  ///< s: h, and the time of the state that all begin at
+    double step = 0, start = 0;             ///< s: h, and the time of the state that all begin at
+    double max_strain = 0, p99_strain = 0;  ///< of stretch springs in that state
     std::vector<StepRecord> steps;
     std::vector<SolveRecord> solves;
     MemoryRecord memory;
@@ -86,6 +87,9 @@ struct SpeedBench {
     std::vector<SizeRecord> sizes;
     double seconds = 0;  ///< that all of it took
     std::string cholmod_missing;
+    /// The sheet on which other simulators were timed: 1000 N/m along the threads, 300 on the diagonals, 0.2
+    /// kg on a square metre.
+    bool like_peers = false;
 };
 
 struct SpeedPlan {

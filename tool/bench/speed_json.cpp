@@ -66,10 +66,16 @@ Json speed_json(const SpeedBench& bench) {
                 {"cache_all", bench.cache_triad[1]}}}};
     json["sizes"] = Json::array();
     for (const SizeRecord& size : bench.sizes) {
-        Json s{{"particles", size.particles}, {"grid", size.grid},
-               {"step", size.step},           {"start", size.start},
-               {"rows", size.rows},           {"components", size.components},
-               {"largest", size.largest},     {"constrained", size.constrained}};
+        Json s{{"particles", size.particles},
+               {"grid", size.grid},
+               {"step", size.step},
+               {"start", size.start},
+               {"max_strain", size.max_strain},
+               {"p99_strain", size.p99_strain},
+               {"rows", size.rows},
+               {"components", size.components},
+               {"largest", size.largest},
+               {"constrained", size.constrained}};
         for (const StepRecord& step : size.steps) s["steps"].push_back(step_json(step));
         for (const SolveRecord& solve : size.solves) s["solves"].push_back(solve_json(solve));
         s["memory"]["peak"] = number(size.memory.peak);

@@ -227,9 +227,9 @@ std::string conditions(const SpeedBench& bench) {
         text += fmt::format(
             "{}: {} × {}, steps of {:.4g} ms from {:.2g} s on; {} components, the largest of {}; {} "
             "particles "
-            "held.\n",
+            "held; strain at most {:.2g}%, {:.2g}% for 99 in 100.\n",
             size_name(size.particles), size.grid[0], size.grid[1], 1e3 * size.step, size.start,
-            size.components, size.largest, size.constrained);
+            size.components, size.largest, size.constrained, 100 * size.max_strain, 100 * size.p99_strain);
     }
     return text;
 }
