@@ -128,7 +128,8 @@ int command_accuracy(const Options& options) {
     const bool film = options.video != "none", contrast = options.stiffer > 0;
     const double whole = 60 * options.budget,
                  each = whole * (film ? 1 - video_share : 1) / (contrast ? 2 : 1);
-    const AccuracyBudget budget{each, options.force, options.quiet};
+    AccuracyBudget budget{each, options.force, options.quiet};
+    budget.after = (film ? video_share * whole : 0) + (contrast ? each : 0);
 
     if (options.cluster.submit || options.collect || options.point >= 0 || options.reference) {
         if (contrast)
@@ -159,6 +160,7 @@ int command_accuracy(const Options& options) {
         if (!video.empty()) files.emplace_back(video);
     }
     if (contrast && keep_on()) {
+        budget.after = 0;
         AccuracyStudy stiff =
             study_accuracy(stiffened(scene, options.stiffer), root / "stiffer", budget, keep_on);
         if (!stiff.points.empty()) {

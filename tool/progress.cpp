@@ -26,7 +26,7 @@ Progress::~Progress() {
     finish();
 }
 
-void Progress::show(int done, int free) {
+void Progress::show(int done, int free, std::optional<double> left) {
     if (quiet_) return;
     const auto now = Clock::now();
     const bool last = done == total_;
@@ -36,7 +36,9 @@ void Progress::show(int done, int free) {
     const double elapsed = std::chrono::duration<double>(now - start_).count();
     const int worked = done - free;
     std::string line = fmt::format("{}: {} {} of {}", what_, unit_, done, total_);
-    if (worked > 0) {
+    if (left && !last) {
+        line += fmt::format(", {} left", duration_text(*left));
+    } else if (worked > 0) {
         const double each = elapsed / worked;
         line += fmt::format(
             ", {:.0f} ms per {}, {}", 1e3 * each, unit_,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 namespace unravel {
@@ -15,8 +16,9 @@ public:
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// `done` frames are finished in all; `free` ones of them cost this process nothing.
-    void show(int done, int free);
+    /// `done` frames are finished in all; `free` ones of them cost this process nothing. `left` is the time
+    /// still to go [s], where that is known better than by what each took so far.
+    void show(int done, int free, std::optional<double> left = {});
     /// Ends the line. Called once, when all is done or will not be.
     void finish();
 

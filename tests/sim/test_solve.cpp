@@ -144,6 +144,49 @@ TEST_CASE("constrained CG matches a direct solve of the projected system, for ev
     }
 }
 
+// ‖S(b − A x)‖ / ‖Sb‖ in the norm of the projected diagonal blocks' pseudo-inverses, from Eq. (9) as it
+// stands.
+TEST_CASE("every preconditioner stops at the first iterate whose residual one measure finds small enough") {
+    constexpr double tolerance = 1e-4;
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        const Problem problem(80, 0.06, 0.1, 0.4, seed);
+        const Components whole = problem.whole();
+        const System system = problem.assembled(whole);
+        const auto stopped = [&](Preconditioner kind, int most, ComponentSolve& solve_took) {
+            SolveWorkspace ws;
+            std::vector<ComponentSolve> solves;
+            solve(system, whole, problem.constraints, problem.guess, {kind, tolerance, most}, ws, solves);
+            solve_took = solves.front();
+            double residual = 0, right = 0;
+            for (std::uint32_t row = 0; row < problem.n; ++row) {
+                const Constraint* c = problem.constraints.find(row);
+                const Mat3 S = c ? c->S : Mat3(Mat3::Identity());
+                const Mat3 inverse =
+                    Eigen::CompleteOrthogonalDecomposition<Mat3>(S * system.diagonal[row] * S)
+                        .setThreshold(1e-9)
+                        .pseudoInverse();
+                const Vec3 r = S * (system.b[row] - row_times(system, row, ws.x)), b = S * system.b[row];
+                residual += r.dot(inverse * r);
+                right += b.dot(inverse * b);
+            }
+            return std::sqrt(residual / right);
+        };
+        for (const Preconditioner kind :
+             {Preconditioner::none, Preconditioner::diagonal, Preconditioner::block,
+              Preconditioner::constrained_block, Preconditioner::ssor, Preconditioner::ic0}) {
+            ComponentSolve took, shorter;
+            const double residual = stopped(kind, 5000, took);
+            INFO("preconditioner " << static_cast<int>(kind) << ", seed " << seed);
+            REQUIRE(took.converged);
+            REQUIRE(took.iterations > 1);
+            CHECK(residual <= tolerance * (1 + 1e-6));
+            CHECK(took.residual == Approx(residual).epsilon(1e-6));
+            CHECK(stopped(kind, static_cast<int>(took.iterations) - 1, shorter) > tolerance);
+            CHECK_FALSE(shorter.converged);
+        }
+    }
+}
+
 TEST_CASE("the decomposed solve matches the whole-system solve and needs no more multiplies") {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         const Problem problem(40, 0.04, 0.2, 0.2, seed);

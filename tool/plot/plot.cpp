@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "render/palette.hpp"
 #include "tool/plot/canvas.hpp"
@@ -12,7 +13,8 @@ namespace unravel {
 namespace {
 
 constexpr Rgb ink{40, 44, 52}, pale{222, 226, 232}, grey{110, 116, 126};
-constexpr double text_size = 12.5;
+constexpr double text_size = 12.5, note_size = 10.5;
+constexpr double note_gap = 6;  // between a point and what is written beside it
 
 // Data along one axis to the page.
 struct Scale {
@@ -194,6 +196,8 @@ private:
             if (guide.horizontal) {
                 c_.line(left_, y_(guide.value), right_, y_(guide.value));
                 c_.text(right_ - 6, y_(guide.value) - 5, guide.label, Align::end);
+                taken_.push_back(
+                    box_of(right_ - 6 - c_.text_width(guide.label), y_(guide.value) - 5, guide.label));
             } else {
                 c_.line(x_(guide.value), top_, x_(guide.value), bottom_);
                 c_.text(x_(guide.value) + 5, top_ + 14, guide.label);
@@ -225,7 +229,7 @@ private:
                 c_.width(1.8);
                 c_.line(x - 4, top_ + 3, x + 4, top_ + 11);
                 c_.line(x - 4, top_ + 11, x + 4, top_ + 3);
-                if (!p.note.empty()) notes_.push_back({x + 7, top_ + 12, p.note, false});
+                if (!p.note.empty()) notes_.push_back({x, top_ + 17, p.note, false});
                 continue;
             }
             if (!y_.holds(p.y)) continue;
@@ -235,7 +239,7 @@ private:
                 c_.width(1.2);
                 c_.line(x_(p.left), y_(p.y), x_(p.right), y_(p.y));
             }
-            if (!p.note.empty()) notes_.push_back({x + 6, y_(p.y) - 5, p.note, false});
+            if (!p.note.empty()) notes_.push_back({x, y_(p.y), p.note, false});
         }
     }
 
@@ -246,15 +250,41 @@ private:
         for (const double end : {p.low, p.high}) c_.line(x - 3, y_(end), x + 3, y_(end));
     }
 
+    struct Box {
+        double left, top, right, bottom;
+        bool meets(const Box& other) const {
+            return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
+        }
+    };
+
+    // Where text written from (x, y) on its base line stands.
+    Box box_of(double x, double y, const std::string& text) const {
+        return {x, y - 9, x + c_.text_width(text), y + 2};
+    }
+
+    // Beside its point, above or below, right or left of it, wherever it covers no other text; a note for
+    // which there is no room is left out.
     void labels_of_points() {
         c_.color(ink);
-        c_.font(10.5);
+        c_.font(note_size);
         for (const Note& note : notes_) {
-            const bool fits = note.x + c_.text_width(note.text) < right_;
-            if (note.centred || fits) {
-                c_.text(note.x, note.y, note.text, note.centred ? Align::middle : Align::start);
-            } else {
-                c_.text(note.x - 14, note.y, note.text, Align::end);
+            if (note.centred) {
+                c_.text(note.x, note.y, note.text, Align::middle);
+                continue;
+            }
+            const double width = c_.text_width(note.text);
+            for (const auto& [dx, dy] : {std::pair{note_gap, -5.0},
+                                         {-note_gap - width, 11.0},
+                                         {note_gap, 11.0},
+                                         {-note_gap - width, -5.0}}) {
+                const Box box = box_of(note.x + dx, note.y + dy, note.text);
+                if (box.left < left_ || box.right > right_ || box.top < top_ || box.bottom > bottom_)
+                    continue;
+                if (std::any_of(taken_.begin(), taken_.end(), [&](const Box& b) { return b.meets(box); }))
+                    continue;
+                c_.text(note.x + dx, note.y + dy, note.text);
+                taken_.push_back(box);
+                break;
             }
         }
         c_.font(text_size);
@@ -281,6 +311,7 @@ private:
         }
     }
 
+    // At (x, y), or beside it.
     struct Note {
         double x, y;
         std::string text;
@@ -291,6 +322,7 @@ private:
     Scale x_, y_;
     std::vector<Tick> x_ticks_, y_ticks_;
     std::vector<Note> notes_;
+    std::vector<Box> taken_;  // by text
     double left_ = 0, right_ = 0, top_ = 0, bottom_ = 0;
 };
 

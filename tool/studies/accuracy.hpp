@@ -16,7 +16,7 @@ namespace unravel {
 /// One way to compute the scene.
 struct AccuracySetting {
     Integrator integrator = Integrator::adaptive_imex;
-    int steps_per_frame = 1;
+    int steps_per_frame = 1;  ///< of `explicit`: substeps of one step a frame, which costs least
     double threshold = 0.2;   ///< of the adaptive schemes
     double tolerance = 1e-3;  ///< of CG
     Activation activation = Solver{}.activation;
@@ -42,6 +42,9 @@ struct AccuracyPoint {
     double slowest() const;
     double quantile(double share) const;  ///< of the times, by nearest rank
 };
+
+/// As the scene file has it.
+const char* integrator_name(Integrator integrator);
 
 /// Positions at frames 1, 2, … of a window that starts with the scene. (frames) × (particles) [m]
 using Trajectory = std::vector<std::vector<Vec3>>;

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/integrators/scheme.hpp"
-
 namespace unravel {
 
 namespace {
@@ -34,10 +32,12 @@ std::vector<Plain> plain_curves(const AccuracyStudy& study) {
     return plain;
 }
 
+// Without `auto`, which takes one of the others.
 const Plain* cheapest_at(const std::vector<Plain>& curves, double error) {
     const Plain* best = nullptr;
     double least = std::numeric_limits<double>::infinity();
     for (const Plain& plain : curves) {
+        if (plain.integrator == Integrator::automatic) continue;
         const std::optional<double> cost = cost_at(plain.curve, error);
         if (!cost || *cost >= least) continue;
         least = *cost;
@@ -51,6 +51,11 @@ const AccuracyCurve* curve_of(const std::vector<Plain>& curves, Integrator integ
         if (plain.integrator == integrator) return &plain.curve;
     }
     return nullptr;
+}
+
+// "from 3e-02 to 1e-03", of levels that follow each other.
+std::string range_text(double from, double to) {
+    return from == to ? fmt::format("at {:.0e}", from) : fmt::format("from {:.0e} to {:.0e}", from, to);
 }
 
 // "down to an error of 1e-3 explicit is cheapest, from there to 1e-4 bdf2"
@@ -72,59 +77,97 @@ std::string winners(const AccuracyStudy& study) {
     }
     std::string text;
     for (const Range& range : ranges) {
-        const std::string where = range.from == range.to
-                                      ? fmt::format("at an error of {:.0e}", range.to)
-                                      : fmt::format("from {:.0e} to {:.0e}", range.from, range.to);
         text += fmt::format("{}{} {} is cheapest ({:.3g} s per second simulated at {:.0e})",
-                            text.empty() ? "" : ", ", where, scheme_of(range.best->integrator).name,
+                            text.empty() ? "for errors " : ", ", range_text(range.from, range.to),
+                            integrator_name(range.best->integrator),
                             *cost_at(range.best->curve, range.to) / study.window(), range.to);
     }
     return text.empty() ? "no method came within an error that the reference can tell" : text;
 }
 
-// How adaptive IMEX compares with the better of its two parents.
-std::string following(const AccuracyStudy& study) {
+constexpr double never = std::numeric_limits<double>::infinity();
+
+// s; `never` where a method was not tried or does not come within the error.
+double cost_or_never(const AccuracyCurve* curve, double error) {
+    return curve ? cost_at(*curve, error).value_or(never) : never;
+}
+
+// Smallest and greatest ratio of the costs of two methods over the errors that both reach, and where.
+struct Ratios {
+    double least = std::numeric_limits<double>::infinity(), most = 0, at_most = 0;
+    bool any() const { return most > 0; }
+    void see(double ratio, double level) {
+        least = std::min(least, ratio);
+        if (ratio > most) most = ratio, at_most = level;
+    }
+};
+
+// Where a method that mixes explicit and implicit costs no more than the better of the two, and how much more
+// elsewhere.
+std::string following(const AccuracyStudy& study, Integrator integrator) {
     const std::vector<Plain> curves = plain_curves(study);
-    const AccuracyCurve *adaptive = curve_of(curves, Integrator::adaptive_imex),
-                        *parents[] = {curve_of(curves, Integrator::explicit_),
-                                      curve_of(curves, Integrator::implicit)};
-    if (!adaptive) return "";
-    double worst = 0, best = std::numeric_limits<double>::infinity(), at_worst = 0, at_best = 0,
-           saved_least = 1, saved_most = -1;
+    const AccuracyCurve *own = curve_of(curves, integrator),
+                        *explicit_ = curve_of(curves, Integrator::explicit_),
+                        *implicit = curve_of(curves, Integrator::implicit);
+    const char* name = integrator_name(integrator);
+    if (!own) return fmt::format("{} was not tried", name);
+    Ratios to_implicit, to_better;
+    std::vector<std::array<double, 2>> follows;  // ranges of errors
+    bool within = false;
+    const char* better_at_most = "";
     for (const double level : error_levels(study)) {
-        const std::optional<double> own = cost_at(*adaptive, level);
-        double better = std::numeric_limits<double>::infinity();
-        for (const AccuracyCurve* parent : parents) {
-            if (parent) better = std::min(better, cost_at(*parent, level).value_or(better));
-        }
-        if (!own || !std::isfinite(better)) continue;
-        if (*own / better > worst) worst = *own / better, at_worst = level;
-        if (*own / better < best) best = *own / better, at_best = level;
-        if (!parents[1]) continue;
-        if (const std::optional<double> implicit = cost_at(*parents[1], level)) {
-            saved_least = std::min(saved_least, 1 - *own / *implicit);
-            saved_most = std::max(saved_most, 1 - *own / *implicit);
+        const double cost = cost_or_never(own, level), of_explicit = cost_or_never(explicit_, level),
+                     of_implicit = cost_or_never(implicit, level);
+        const bool explicit_better = of_explicit < of_implicit;
+        const double better = std::min(of_explicit, of_implicit);
+        if (cost == never || better == never) continue;
+        const double ratio = cost / better;
+        if (of_implicit < never) to_implicit.see(cost / of_implicit, level);
+        if (ratio > to_better.most) better_at_most = explicit_better ? "explicit" : "implicit";
+        to_better.see(ratio, level);
+        if (ratio > same_time) {
+            within = false;
+        } else if (within) {
+            follows.back()[1] = level;
+        } else {
+            follows.push_back({level, level});
+            within = true;
         }
     }
-    if (worst == 0) return "adaptive-imex has no error in common with explicit or implicit";
-    std::string text =
-        worst <= same_time
-            ? fmt::format(
-                  "adaptive-imex is never dearer than the better of explicit and implicit ({:.2f} "
-                  "times at {:.0e})",
-                  worst, at_worst)
-            : fmt::format(
-                  "adaptive-imex costs {:.2g} to {:.2g} times the better of explicit and implicit "
-                  "(at {:.0e}, at {:.0e})",
-                  best, worst, at_best, at_worst);
-    if (saved_most >= saved_least && saved_least >= 0) {
-        text += fmt::format(", and {:.0f} to {:.0f}% less than implicit at the same error", 100 * saved_least,
-                            100 * saved_most);
-    } else if (saved_most >= saved_least) {
-        text += fmt::format(", and at the same error between {:.2g} and {:.2g} times the time of implicit",
-                            1 - saved_most, 1 - saved_least);
+    if (!to_better.any()) return fmt::format("{} has no error in common with explicit or implicit", name);
+    std::string text = name;
+    if (to_better.most <= same_time) {
+        text +=
+            fmt::format(" is never dearer than the better of explicit and implicit ({:.2g} to {:.2g} times)",
+                        to_better.least, to_better.most);
+    } else {
+        std::string where;
+        for (const auto& [from, to] : follows) where += (where.empty() ? "" : " and ") + range_text(from, to);
+        text += where.empty()
+                    ? " is everywhere dearer than the better of explicit and implicit"
+                    : fmt::format(" costs no more than the better of explicit and implicit {}", where);
+        text += fmt::format(", at most {:.2g} times as much ({}, {} being the better)", to_better.most,
+                            range_text(to_better.at_most, to_better.at_most), better_at_most);
+    }
+    if (to_implicit.any()) {
+        text += fmt::format("; against implicit at the same error it takes {:.0f} to {:.0f}% of the time",
+                            100 * to_implicit.least, 100 * to_implicit.most);
     }
     return text;
+}
+
+// What `auto` takes is seen by whether it multiplied rows.
+std::string automatic_words(const AccuracyStudy& study) {
+    bool swept = false, coupled = false;
+    for (const AccuracyPoint& p : study.points) {
+        if (p.broke || p.setting.integrator != Integrator::automatic) continue;
+        (p.rvm == 0 ? swept : coupled) = true;
+    }
+    if (!swept && !coupled) return "auto was not tried";
+    const char* taken = swept && coupled ? "explicit substeps at some steps and adaptive IMEX at others"
+                        : swept          ? "explicit substeps"
+                                         : "adaptive IMEX";
+    return fmt::format("auto takes {}; {}", taken, following(study, Integrator::automatic));
 }
 
 // What stability alone asks of explicit steps: the largest that did not blow up.
@@ -150,7 +193,7 @@ std::string explicit_words(const AccuracyStudy& study) {
     if (!rival) return text + ", which no other method reached";
     const double ratio = p.median() / *cost_at(rival->curve, p.error);
     return text + fmt::format(" and {:.2g} times the time of the cheapest other method at that error ({})",
-                              ratio, scheme_of(rival->integrator).name);
+                              ratio, integrator_name(rival->integrator));
 }
 
 // Names of methods stand once, beside the right plot; orders differ between the two and are left out.
@@ -222,7 +265,7 @@ std::vector<double> error_levels(const AccuracyStudy& study) {
 std::string winner_table(const AccuracyStudy& study) {
     const std::vector<Plain> curves = plain_curves(study);
     std::string text = fmt::format("{:<10}", "error");
-    for (const Plain& plain : curves) text += fmt::format("{:>16}", scheme_of(plain.integrator).name);
+    for (const Plain& plain : curves) text += fmt::format("{:>16}", integrator_name(plain.integrator));
     text += "   cheapest\n";
     for (const double level : error_levels(study)) {
         text += fmt::format("{:<10.0e}", level);
@@ -231,15 +274,19 @@ std::string winner_table(const AccuracyStudy& study) {
             text += fmt::format("{:>16}", cost ? fmt::format("{:.3f} s", *cost / study.window()) : "-");
         }
         const Plain* best = cheapest_at(curves, level);
-        text += fmt::format("   {}\n", best ? scheme_of(best->integrator).name : "-");
+        text += fmt::format("   {}\n", best ? integrator_name(best->integrator) : "-");
     }
     return text;
 }
 
 std::string contrast_words(const AccuracyStudy& soft, const AccuracyStudy& stiff, double times) {
-    return fmt::format("On the cloth as it is, {}. {}. {}. On one {:g} times stiffer, {}. {}. {}.",
-                       winners(soft), capital(explicit_words(soft)), capital(following(soft)), times,
-                       winners(stiff), capital(explicit_words(stiff)), capital(following(stiff)));
+    const auto words = [](const AccuracyStudy& study) {
+        return fmt::format("{}. {}. {}. {}.", winners(study), capital(explicit_words(study)),
+                           capital(following(study, Integrator::adaptive_imex)),
+                           capital(automatic_words(study)));
+    };
+    return fmt::format("On the cloth as it is, {}\nOn one {:g} times stiffer, {}", words(soft), times,
+                       words(stiff));
 }
 
 std::array<Plot, 2> contrast_plots(const AccuracyStudy& soft, const AccuracyStudy& stiff, double times) {
@@ -279,6 +326,8 @@ std::array<Plot, 2> contrast_plots(const AccuracyStudy& soft, const AccuracyStud
 std::string contrast_page(const AccuracyStudy& soft, const AccuracyStudy& stiff, double times) {
     const std::array<Plot, 2> plots = contrast_plots(soft, stiff, times);
     const std::string svg = plots_svg(plots);
+    std::string words = contrast_words(soft, stiff, times);
+    words.replace(words.find('\n'), 1, "</strong></p>\n<p><strong>");
     return fmt::format(
         "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Soft and stiff: {0}</title>\n"
         "<style>body{{font:15px/1.5 sans-serif;max-width:82em;margin:2em auto;padding:0 1em}}"
@@ -288,8 +337,7 @@ std::string contrast_page(const AccuracyStudy& soft, const AccuracyStudy& stiff,
         "reference over the cloth's diagonal), between the steps tried interpolated on log scales; methods "
         "at a threshold of 0.2 and a tolerance of 1e-3.</p>\n<h2>As it is</h2><pre>{3}</pre>\n"
         "<h2>{4:g} times stiffer</h2><pre>{5}</pre></html>\n",
-        soft.scene.name, contrast_words(soft, stiff, times), svg.substr(svg.find("<svg")), winner_table(soft),
-        times, winner_table(stiff));
+        soft.scene.name, words, svg.substr(svg.find("<svg")), winner_table(soft), times, winner_table(stiff));
 }
 
 }  // namespace unravel

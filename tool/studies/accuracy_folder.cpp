@@ -6,7 +6,6 @@
 #include <set>
 
 #include "base/whole_file.hpp"
-#include "sim/integrators/scheme.hpp"
 #include "sim/scene/load.hpp"
 
 namespace unravel {
@@ -28,9 +27,8 @@ std::size_t particles_of(const Scene& scene) {
 // Of two timings of a point the one with more runs counts.
 void add_points(const fs::path& csv, std::vector<AccuracyPoint>& points) {
     for (AccuracyPoint& point : read_accuracy_csv(read_whole_text(csv, largest_csv))) {
-        const auto known = std::find_if(points.begin(), points.end(), [&](const AccuracyPoint& p) {
-            return p.setting == point.setting;
-        });
+        const auto known = std::find_if(points.begin(), points.end(),
+                                        [&](const AccuracyPoint& p) { return p.setting == point.setting; });
         if (known == points.end()) {
             points.push_back(std::move(point));
         } else if (point.seconds.size() >= known->seconds.size()) {
@@ -93,9 +91,9 @@ void AccuracyFolder::save_point(const AccuracyPoint& point) const {
 }
 
 fs::path AccuracyFolder::point_file(const AccuracySetting& s) const {
-    return points() / fmt::format("{}_{}_{}_{}_{}_{}_{}.csv", scheme_of(s.integrator).name, s.steps_per_frame,
-                                  s.threshold, s.tolerance, static_cast<int>(s.activation), s.band,
-                                  static_cast<int>(s.bend));
+    return points() / fmt::format("{}_{}_{}_{}_{}_{}_{}.csv", integrator_name(s.integrator),
+                                  s.steps_per_frame, s.threshold, s.tolerance, static_cast<int>(s.activation),
+                                  s.band, static_cast<int>(s.bend));
 }
 
 }  // namespace unravel

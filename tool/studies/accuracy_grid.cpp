@@ -12,9 +12,9 @@ namespace unravel {
 
 namespace {
 
-constexpr Integrator integrators[] = {
-    Integrator::explicit_,      Integrator::implicit, Integrator::adaptive_imex, Integrator::bdf2,
-    Integrator::adaptive_imex2, Integrator::imex,     Integrator::newton};
+constexpr Integrator integrators[] = {Integrator::explicit_, Integrator::implicit, Integrator::adaptive_imex,
+                                      Integrator::automatic, Integrator::bdf2,     Integrator::adaptive_imex2,
+                                      Integrator::imex,      Integrator::newton};
 constexpr const char* activations[] = {"start", "predicted", "resolve", "ahead"};
 constexpr const char* bend_treatments[] = {"scheme", "explicit"};
 
@@ -27,9 +27,10 @@ std::vector<int> ladder(int coarsest, int finest, int reference, int finer = 8) 
     return steps;
 }
 
-// Explicit steps are to come down to where they are stable. They are of first order, so that the reference,
-// of second, need not be as far below.
-constexpr int coarsest_explicit = 8, finest_explicit = 1024, reference_below_explicit = 2;
+// Explicit steps are to come down to where they are stable, and cost so little that there may be many. They
+// are of first order, so that the reference, of second, need not have more of them: the floor says where the
+// two can't be told apart.
+constexpr int coarsest_explicit = 8, finest_explicit = 2048;
 
 void add(std::vector<AccuracySetting>& grid, AccuracySetting setting, const std::vector<int>& steps) {
     for (const int k : steps) {
@@ -61,7 +62,7 @@ bool parse_point(const std::vector<std::string_view>& cells, AccuracyPoint& p) {
     if (cells.size() != split(header, ',').size()) return false;
     AccuracySetting& s = p.setting;
     const auto* scheme = std::find_if(std::begin(integrators), std::end(integrators),
-                                      [&](Integrator i) { return cells[0] == scheme_of(i).name; });
+                                      [&](Integrator i) { return cells[0] == integrator_name(i); });
     const auto* activation = std::find(std::begin(activations), std::end(activations), cells[4]);
     const auto* bend = std::find(std::begin(bend_treatments), std::end(bend_treatments), cells[6]);
     int broke = 0;
@@ -87,8 +88,13 @@ bool parse_point(const std::vector<std::string_view>& cells, AccuracyPoint& p) {
 
 }  // namespace
 
+const char* integrator_name(Integrator integrator) {
+    // `auto` has no scheme of its own.
+    return integrator == Integrator::automatic ? "auto" : scheme_of(integrator).name;
+}
+
 std::string AccuracySetting::method() const {
-    std::string text = scheme_of(integrator).name;
+    std::string text = integrator_name(integrator);
     if (threshold != common.threshold) text += fmt::format(", threshold {}", threshold);
     if (tolerance != common.tolerance) text += fmt::format(", tolerance {:.0e}", tolerance);
     if (activation != common.activation)
@@ -115,7 +121,7 @@ std::vector<AccuracySetting> accuracy_grid(const AccuracyReference& reference) {
     for (const Integrator integrator : integrators) {
         add(grid, variant(integrator, [](AccuracySetting&) {}),
             integrator == Integrator::explicit_
-                ? ladder(coarsest_explicit, finest_explicit, finest, reference_below_explicit)
+                ? ladder(coarsest_explicit, finest_explicit, finest_explicit, 1)
                 : ladder(1, 64, finest));
     }
     const std::vector<int> few = ladder(2, 16, finest), wide = ladder(4, 64, finest);
@@ -148,7 +154,7 @@ std::string accuracy_csv(const std::vector<AccuracyPoint>& points) {
     for (const AccuracyPoint& p : points) {
         const AccuracySetting& s = p.setting;
         csv += fmt::format("{},{},{},{},{},{},{},{:d},{},{},{},{},{},{},{:.6f},{:.6f},{:.6f},{},{},{},",
-                           scheme_of(s.integrator).name, s.steps_per_frame, s.threshold, s.tolerance,
+                           integrator_name(s.integrator), s.steps_per_frame, s.threshold, s.tolerance,
                            activations[static_cast<int>(s.activation)], s.band,
                            bend_treatments[static_cast<int>(s.bend)], p.broke, p.error, p.max_strain,
                            p.lowest, p.energy, p.steps, p.rvm, p.median(), p.fastest(), p.slowest(),

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/integrators/scheme.hpp"
 #include "tool/studies/accuracy_verdict.hpp"
 
 namespace unravel {
@@ -12,6 +11,13 @@ namespace unravel {
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+// Of the component palette; `auto` lies on one of the others and has to stand out from them.
+constexpr int front_color = 7, automatic_color = 9;
+
+int color_of(Integrator integrator) {
+    return integrator == Integrator::automatic ? automatic_color : static_cast<int>(integrator);
+}
 
 std::string escaped(const std::string& text) {
     std::string out;
@@ -79,14 +85,18 @@ Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyRefer
     const std::vector<const AccuracyPoint*> front = pareto_front(points);
     for (const AccuracyCurve& curve : curves_of(points, reference.floor)) {
         // Explicit steps multiply no rows.
-        if (axis == CostAxis::rvm && curve.points.front()->setting.integrator == Integrator::explicit_)
+        if (axis == CostAxis::rvm &&
+            std::all_of(curve.points.begin(), curve.points.end(), [](const auto* p) { return p->rvm == 0; }))
             continue;
         const AccuracySetting& setting = curve.points.front()->setting;
         PlotSeries series;
         if (setting.plain()) {
             series.label = curve.method;
-            if (curve.order) series.label += fmt::format(" (order {:.1f})", *curve.order);
-            series.color = static_cast<int>(setting.integrator);
+            if (setting.integrator == Integrator::explicit_) series.label += " substeps";
+            // The steps of `auto` are not all its own.
+            if (curve.order && setting.integrator != Integrator::automatic)
+                series.label += fmt::format(" (order {:.1f})", *curve.order);
+            series.color = color_of(setting.integrator);
         } else {
             // The table tells them apart.
             series.label = "other thresholds, tolerances …";
@@ -119,11 +129,7 @@ Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyRefer
     }
     name_the_broken(plot);
     if (axis == CostAxis::time) {
-        PlotSeries line{"cheapest for its error",
-                        {},
-                        SeriesStyle::line,
-                        true,
-                        static_cast<int>(Integrator::adaptive_imex2) + 1};
+        PlotSeries line{"cheapest for its error", {}, SeriesStyle::line, true, front_color};
         for (const AccuracyPoint* p : front) {
             line.points.push_back(plotted(*p, seconds_simulated, axis));
             line.points.back().left = line.points.back().right = nothing;
@@ -144,7 +150,9 @@ std::string accuracy_page(const std::vector<AccuracyPoint>& points, const Accura
         "<p>Each point is one run of the scene's first {3:.2f} s. Its error is the distance of its particles "
         "from a reference at every frame, RMS over particles and frames, as a share of the cloth's diagonal; "
         "its cost is the median time of the steps over interleaved runs, with their middle half as a bar. "
-        "Along a line the step is halved from point to point; steps are named where no other run beats the "
+        "Along a line the step is halved from point to point (of explicit it is the substep of one step a "
+        "frame; auto divides its steps where it takes explicit ones); steps are named where no other run "
+        "beats the "
         "point in both. Crosses at the upper edge are runs that blew up. The reference is {4} at steps of "
         "1/{5} s and a tolerance of {6:.0e}; {7} at steps of 1/{8} s differs from it by {9:.2e}: nothing "
         "below "

@@ -16,6 +16,8 @@ namespace {
 constexpr double far_out = 100;
 // A run that explicit springs bring nearer to their limit of stability than this is no reference.
 constexpr double safe_share = 0.5;
+// So many times as many steps as the first reference takes an explicit one at most.
+constexpr int finer_explicit = 16;
 
 double median_of(std::vector<double> values) {
     if (values.empty()) return 0;
@@ -40,9 +42,9 @@ int comparable_frames(const Trajectory& a, const Trajectory& b, double diagonal,
 
 // What precedes the positions in a reference's file.
 struct ReferenceHeader {
-    char kind[8] = {'u', 'n', 'r', 'e', 'f', '0', '0', '2'};
+    char kind[8] = {'u', 'n', 'r', 'e', 'f', '0', '0', '3'};
     std::int32_t steps_per_frame = 0, frames = 0;
-    std::int32_t second_is_explicit = 1, unused = 0;
+    std::int32_t second_is_explicit = 1, second_steps_per_frame = 0;
     std::uint64_t particles = 0;
     double floor = 0;
 };
@@ -56,14 +58,29 @@ AccuracySetting reference_setting(Integrator integrator, int steps_per_frame) {
     return setting;
 }
 
-// The scheme that shares least with the first, of those that bear the step.
-Integrator second_integrator(const Scene& scene, int steps_per_frame) {
+double seconds_a_step(const AccuracyRun& run) {
+    return run.point.median() / std::max<double>(1, static_cast<double>(run.point.steps));
+}
+
+// The scheme that shares least with the first, of those that bear the step. Explicit steps are of first order
+// where the first reference is of second, and cheap: as many as take the time that a step of the first does
+// [s].
+AccuracySetting second_reference(const Scene& scene, int steps_per_frame, double seconds,
+                                 const std::function<bool()>& keep_on) {
     StepOptions options = step_options(scene.solver);
     options.integrator = Integrator::explicit_;
     Placement placement;
     const ClothModel model = build_model(scene, placement);
-    const double h = 1.0 / (scene.clip.fps * steps_per_frame);
-    return explicit_limit(model, options, h).share < safe_share ? Integrator::explicit_ : Integrator::bdf2;
+    int finer = 1;
+    while (finer <= finer_explicit &&
+           !(explicit_limit(model, options, 1.0 / (scene.clip.fps * steps_per_frame * finer)).share <
+             safe_share))
+        finer *= 2;
+    if (finer > finer_explicit) return reference_setting(Integrator::bdf2, steps_per_frame);
+    const double each = seconds_a_step(
+        run_setting(scene, reference_setting(Integrator::explicit_, finer * steps_per_frame), 1, keep_on));
+    while (finer < finer_explicit && 2 * finer * each < seconds) finer *= 2;
+    return reference_setting(Integrator::explicit_, finer * steps_per_frame);
 }
 
 }  // namespace
@@ -105,7 +122,11 @@ AccuracyRun run_setting(const Scene& scene, const AccuracySetting& setting, int 
                         const std::function<bool()>& keep_on) {
     Scene variant = scene;
     variant.solver.integrator = setting.integrator;
-    variant.solver.step = 1.0 / (scene.clip.fps * setting.steps_per_frame);
+    // Explicit steps in one go, as fast as they can be: a step a frame, in parts.
+    const bool in_parts = setting.integrator == Integrator::explicit_;
+    const int steps = in_parts ? 1 : setting.steps_per_frame;
+    variant.solver.step = 1.0 / (scene.clip.fps * steps);
+    variant.solver.substeps = in_parts ? setting.steps_per_frame : 1;
     variant.solver.threshold = setting.threshold;
     variant.solver.tolerance = setting.tolerance;
     variant.solver.activation = setting.activation;
@@ -124,15 +145,15 @@ AccuracyRun run_setting(const Scene& scene, const AccuracySetting& setting, int 
                 run.stopped = true;
                 return run;
             }
-            for (int k = 0; k < setting.steps_per_frame; ++k) {
+            for (int k = 0; k < steps; ++k) {
                 // Strain and energy are looked at where a frame ends: more often they would cost more than
                 // a small step.
-                simulation.options.measure = k + 1 == setting.steps_per_frame;
+                simulation.options.measure = k + 1 == steps;
                 const StepReport report = step(simulation.model, simulation.options, variant.solver.step,
                                                simulation.state, simulation.ws);
                 seconds += report.times.step();
                 run.point.rvm += report.rvm;
-                ++run.point.steps;
+                run.point.steps += static_cast<std::uint64_t>(setting.steps_per_frame / steps);
                 if (!simulation.options.measure) continue;
                 run.point.max_strain = std::max(run.point.max_strain, report.max_strain);
                 run.point.lowest = report.lowest;
@@ -158,14 +179,13 @@ AccuracyReference make_reference(const Scene& scene, double seconds, const std::
     const int probe_frames = std::max(1, scene.clip.fps / 8);
     const AccuracyRun probe = run_setting(scene, reference_setting(Integrator::adaptive_imex2, 64),
                                           std::min(all, probe_frames), keep_on);
-    const double per_step =
-        probe.point.median() / std::max<double>(1, static_cast<double>(probe.point.steps));
+    const double per_step = seconds_a_step(probe);
     const int wanted = std::min(all, std::max(1, scene.clip.fps / 2));
     int steps = 256;
     while (steps < finest_reference && 2 * (2.0 * steps) * wanted * per_step < seconds) steps *= 2;
 
     reference.first = reference_setting(Integrator::adaptive_imex2, steps);
-    reference.second = reference_setting(second_integrator(scene, steps), steps);
+    reference.second = second_reference(scene, steps, per_step, keep_on);
     AccuracyRun first = run_setting(scene, reference.first, wanted, keep_on);
     const AccuracyRun other = run_setting(scene, reference.second, wanted, keep_on);
     const double diagonal = diagonal_of(scene);
@@ -183,6 +203,7 @@ std::string reference_bytes(const AccuracyReference& reference) {
     header.frames = reference.frames;
     header.particles = reference.trajectory.empty() ? 0 : reference.trajectory.front().size();
     header.second_is_explicit = reference.second.integrator == Integrator::explicit_;
+    header.second_steps_per_frame = reference.second.steps_per_frame;
     header.floor = reference.floor;
     std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
     for (const std::vector<Vec3>& x : reference.trajectory)
@@ -198,13 +219,15 @@ AccuracyReference read_reference(const std::filesystem::path& file, std::size_t 
     const std::size_t frame_bytes = particles * sizeof(Vec3);
     if (bytes.size() < sizeof header || std::memcmp(header.kind, expected.kind, sizeof header.kind) != 0 ||
         header.particles != particles || header.frames < 0 || header.steps_per_frame < 1 ||
+        header.second_steps_per_frame < 1 ||
         bytes.size() != sizeof header + static_cast<std::size_t>(header.frames) * frame_bytes) {
         throw InputError(file, "is no reference of this scene; --force makes a new one");
     }
     AccuracyReference reference;
     reference.first = reference_setting(Integrator::adaptive_imex2, header.steps_per_frame);
-    reference.second = reference_setting(
-        header.second_is_explicit != 0 ? Integrator::explicit_ : Integrator::bdf2, header.steps_per_frame);
+    reference.second =
+        reference_setting(header.second_is_explicit != 0 ? Integrator::explicit_ : Integrator::bdf2,
+                          header.second_steps_per_frame);
     reference.frames = header.frames;
     reference.floor = header.floor;
     for (int k = 0; k < header.frames; ++k) {

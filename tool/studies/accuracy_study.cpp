@@ -60,6 +60,9 @@ private:
 
     double spent() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
+    // s, of everything: it ends with its budget, or before.
+    double left() const { return std::max(0.0, budget_.seconds - spent()) + budget_.after; }
+
     // A method's next finer run takes at most about twice the last one's time.
     double estimate(const AccuracySetting& setting) const {
         double best = 0;
@@ -73,11 +76,11 @@ private:
 
     void run_all_once() {
         const std::vector<AccuracySetting> grid = accuracy_grid(study_.reference);
-        Progress progress(study_.scene.name + " once", static_cast<int>(grid.size()), budget_.quiet);
+        Progress progress(study_.scene.name + " once", static_cast<int>(grid.size()), budget_.quiet, "point");
         int done = 0, free = 0;
         for (const AccuracySetting& setting : grid) {
             if (!keep_on_()) break;
-            progress.show(done++, free);
+            progress.show(done++, free, left());
             if (study_.find(setting)) {
                 ++free;
                 continue;
@@ -113,12 +116,12 @@ private:
     void repeat() {
         const std::vector<std::size_t> worth = worth_timing();
         Progress progress(study_.scene.name + " timing", static_cast<int>(wanted_runs * worth.size()),
-                          budget_.quiet);
+                          budget_.quiet, "run");
         int done = static_cast<int>(worth.size());
         const int free = done;
         for (std::size_t round = 2; round <= wanted_runs; ++round) {
             for (const std::size_t k : worth) {
-                progress.show(done++, free);
+                progress.show(done++, free, left());
                 if (!keep_on_()) break;
                 AccuracyPoint& point = study_.points[k];
                 if (point.seconds.size() >= round || spent() + point.median() > budget_.seconds) continue;

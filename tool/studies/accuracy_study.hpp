@@ -10,6 +10,7 @@ struct AccuracyBudget {
     double seconds = 600;  ///< for everything
     bool force = false;    ///< forget what an earlier study left in the folder
     bool quiet = false;
+    double after = 0;  ///< s, what is to follow and counts as time left
 };
 
 /// Times of a point on one machine: so many make its median.

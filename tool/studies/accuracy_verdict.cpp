@@ -8,8 +8,6 @@
 #include <map>
 #include <set>
 
-#include "sim/integrators/scheme.hpp"
-
 namespace unravel {
 
 namespace {
@@ -19,6 +17,15 @@ constexpr double clear_of_floor = 3;
 
 std::string step_text(const AccuracySetting& s, int fps) {
     return fmt::format("1/{} s", s.steps_per_frame * fps);
+}
+
+// What to write into the scene.
+std::string how_to(const AccuracySetting& s, int fps) {
+    if (s.integrator == Integrator::explicit_)
+        return fmt::format("explicit with {} substeps of {} (solver.step = \"1/{}\", solver.substeps = {})",
+                           s.steps_per_frame, step_text(s, fps), fps, s.steps_per_frame);
+    return fmt::format("{} with steps of {} and solver.activation_band = {}", s.method(), step_text(s, fps),
+                       s.band);
 }
 
 const AccuracyPoint* cheapest_within(const std::vector<AccuracyPoint>& points, double error,
@@ -124,18 +131,17 @@ std::string recommendation(const std::vector<AccuracyPoint>& points, double erro
             front.empty() ? 0.0 : front.back()->error);
     }
     std::string text = fmt::format(
-        "For an error of {:.2g} of the cloth's diagonal take {} with steps of {} and activation_band = {}: "
-        "{:.3g} s for each second simulated, error {:.2g}.",
-        error, best->setting.method(), step_text(best->setting, fps), best->setting.band,
-        best->median() / seconds_simulated, best->error);
+        "For an error of {:.2g} of the cloth's diagonal take {}: {:.3g} s for each second simulated, error "
+        "{:.2g}.",
+        error, how_to(best->setting, fps), best->median() / seconds_simulated, best->error);
     for (const Integrator rival : {Integrator::implicit, Integrator::explicit_}) {
         const AccuracyPoint* other = cheapest_within(points, error, &rival);
         if (rival == best->setting.integrator) continue;
         if (other) {
-            text += fmt::format(" {} needs steps of {} and {:.1f} times the time.", scheme_of(rival).name,
+            text += fmt::format(" {} needs steps of {} and {:.1f} times the time.", integrator_name(rival),
                                 step_text(other->setting, fps), other->median() / best->median());
         } else {
-            text += fmt::format(" {} does not reach it at the steps tried.", scheme_of(rival).name);
+            text += fmt::format(" {} does not reach it at the steps tried.", integrator_name(rival));
         }
     }
     return text;

@@ -83,6 +83,25 @@ TEST_CASE("a point that is not finite is drawn at the upper edge") {
     CHECK(colored_pixels(plot_image(plot, 1)) > colored_pixels(plot_image(without, 1)));
 }
 
+// Letters written twice over each other can be read no more.
+TEST_CASE("notes of points that lie together give way to each other") {
+    Plot plot = simple_plot();
+    plot.series[0].points = {{1, 1}, {2, 2}, {3, 3}};
+    const auto ink = [&](const char* first, const char* second) {
+        plot.series[0].points[1].note = first;
+        plot.series.resize(1);
+        plot.series.push_back(plot.series[0]);
+        plot.series[1].points[1].note = second;
+        const Image image = plot_image(plot, 1);
+        std::size_t dark = 0;
+        for (std::size_t k = 0; k < image.pixels.size(); k += 4) dark += image.pixels[k] < 100;
+        return dark;
+    };
+    const std::size_t none = ink("", ""), one = ink("1/400 s", ""), both = ink("1/400 s", "1/400 s");
+    CHECK(one > none);
+    CHECK(both - none == Approx(2.0 * static_cast<double>(one - none)).epsilon(0.15));
+}
+
 TEST_CASE("values a log axis can't hold are left out") {
     Plot plot = simple_plot();
     plot.y.log = true;
