@@ -2,11 +2,15 @@
 
 #include <cairo-svg.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 namespace unravel {
@@ -42,6 +46,30 @@ void draw_on(cairo_surface_t* surface, double scale, const std::function<void(Ca
     Canvas canvas(context.get());
     draw(canvas);
     require(cairo_status(context.get()));
+}
+
+// Cairo names glyphs and clips by number, from zero in each document: in a page that holds two of them, the
+// second would be written with the letters of the first. So names begin with a hash of the document.
+std::string with_own_names(const std::string& svg) {
+    std::uint64_t hash = 14695981039346656037u;  // FNV-1a
+    for (const char c : svg) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+    char own[20];
+    std::snprintf(own, sizeof own, "p%016llx-", static_cast<unsigned long long>(hash));
+    constexpr std::string_view before_names[] = {"id=\"", "href=\"#", "url(#"};
+    std::string named;
+    named.reserve(svg.size() + svg.size() / 4);
+    for (std::size_t k = 0; k < svg.size();) {
+        const auto* const begins =
+            std::find_if(std::begin(before_names), std::end(before_names),
+                         [&](std::string_view text) { return svg.compare(k, text.size(), text) == 0; });
+        if (begins == std::end(before_names)) {
+            named += svg[k++];
+        } else {
+            named.append(*begins).append(own);
+            k += begins->size();
+        }
+    }
+    return named;
 }
 
 }  // namespace
@@ -140,7 +168,7 @@ std::string canvas_svg(int width, int height, const std::function<void(Canvas&)>
         cairo_surface_finish(surface.get());
         require(cairo_surface_status(surface.get()));
     }
-    return svg;
+    return with_own_names(svg);
 }
 
 Image canvas_image(int width, int height, double scale, const std::function<void(Canvas&)>& draw) {

@@ -77,10 +77,15 @@ std::string winners(const AccuracyStudy& study) {
     }
     std::string text;
     for (const Range& range : ranges) {
-        text += fmt::format("{}{} {} is cheapest ({:.3g} s per second simulated at {:.0e})",
-                            text.empty() ? "for errors " : ", ", range_text(range.from, range.to),
-                            integrator_name(range.best->integrator),
-                            *cost_at(range.best->curve, range.to) / study.window(), range.to);
+        const bool one = range.from == range.to;
+        text += fmt::format(
+            "{}{} {} is cheapest ({:.3g} s per second simulated at {:.0e})",
+            !text.empty() ? ", "
+            : one         ? "for an error "
+                          : "for errors ",
+            text.empty() && one ? fmt::format("of {:.0e}", range.to) : range_text(range.from, range.to),
+            integrator_name(range.best->integrator), *cost_at(range.best->curve, range.to) / study.window(),
+            range.to);
     }
     return text.empty() ? "no method came within an error that the reference can tell" : text;
 }
@@ -146,8 +151,8 @@ std::string following(const AccuracyStudy& study, Integrator integrator) {
         text += where.empty()
                     ? " is everywhere dearer than the better of explicit and implicit"
                     : fmt::format(" costs no more than the better of explicit and implicit {}", where);
-        text += fmt::format(", at most {:.2g} times as much ({}, {} being the better)", to_better.most,
-                            range_text(to_better.at_most, to_better.at_most), better_at_most);
+        text += fmt::format(", elsewhere at most {:.2g} times as much ({}, {} being the better)",
+                            to_better.most, range_text(to_better.at_most, to_better.at_most), better_at_most);
     }
     if (to_implicit.any()) {
         text += fmt::format("; against implicit at the same error it takes {:.0f} to {:.0f}% of the time",
@@ -268,6 +273,7 @@ std::string winner_table(const AccuracyStudy& study) {
     for (const Plain& plain : curves) text += fmt::format("{:>16}", integrator_name(plain.integrator));
     text += "   cheapest\n";
     for (const double level : error_levels(study)) {
+        if (!cheapest_at(curves, level)) continue;
         text += fmt::format("{:<10.0e}", level);
         for (const Plain& plain : curves) {
             const std::optional<double> cost = cost_at(plain.curve, level);

@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "tool/plot/plot.hpp"
 #include "tool/plot/ticks.hpp"
@@ -110,6 +112,25 @@ TEST_CASE("values a log axis can't hold are left out") {
     CHECK(plot_svg(plot).find("nan") == std::string::npos);
     plot.series[0].points.clear();
     CHECK(plot_svg(plot).find("nan") == std::string::npos);
+}
+
+// A page holds several documents, and a name in it is to mean one thing.
+TEST_CASE("names within SVG documents of two plots differ") {
+    const auto names = [](const std::string& svg, const std::string& before) {
+        std::set<std::string> found;
+        for (std::size_t at = svg.find(before); at != svg.npos; at = svg.find(before, at + 1))
+            found.insert(svg.substr(at + before.size(),
+                                    svg.find_first_of("\")", at + before.size()) - at - before.size()));
+        return found;
+    };
+    Plot other = simple_plot();
+    other.title = "another";
+    const std::string a = plot_svg(simple_plot()), b = plot_svg(other);
+    const std::set<std::string> ours = names(a, "id=\""), theirs = names(b, "id=\"");
+    REQUIRE(ours.size() > 5);
+    for (const std::string& name : ours) CHECK(theirs.count(name) == 0);
+    for (const std::string& name : names(a, "href=\"#")) CHECK(ours.count(name) == 1);
+    for (const std::string& name : names(a, "url(#")) CHECK(ours.count(name) == 1);
 }
 
 TEST_CASE("a plot is a whole SVG document") {
