@@ -9,12 +9,34 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace unravel {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
+
+/// Leaves new elements as the allocator gives them: memory that nobody writes is then none that the machine
+/// gives away. Only for what is always written before it is read.
+template <typename T>
+struct Untouched : std::allocator<T> {
+    template <typename U>
+    struct rebind {
+        using other = Untouched<U>;
+    };
+    template <typename U>
+    void construct(U* p) noexcept {
+        ::new (static_cast<void*>(p)) U;
+    }
+    template <typename U, typename... Args>
+    void construct(U* p, Args&&... args) {
+        ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
+    }
+};
+template <typename T>
+using UntouchedVector = std::vector<T, Untouched<T>>;
 
 /// Rows, particles or springs handled by one task. Large enough to hide a task's cost, small enough for two
 /// cores to share 10⁴ of them evenly.

@@ -255,7 +255,6 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
         find_mesh_neighbours(model);
     }
     model.spring_adjacency = adjacency_of(model.size(), model.springs.i, model.springs.j);
-    model.bend_adjacency = adjacency_of(model.size(), model.bends.i, model.bends.j);
     return model;
 }
 

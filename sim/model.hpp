@@ -73,9 +73,8 @@ struct ClothModel {
     ExtensionSprings springs;  ///< stretch and shear
     Adjacency spring_adjacency;
     BendSprings bends;
-    Adjacency bend_adjacency;
     std::vector<GridSprings> grids;  ///< one per cloth that is a grid: its springs by direction
-    Stitches stitches;  ///< empty where no mesh has seams
+    Stitches stitches;               ///< empty where no mesh has seams
     std::vector<PinnedGroup> pins;
     Vec3 gravity{0, 0, 0};                        ///< m/s²
     std::vector<Solid> solids;                    ///< what the cloth meets; empty: no contact at all

@@ -15,7 +15,7 @@ namespace unravel {
 ///   P⁻¹ S = S (S C S + c (I − S))⁻¹ S    for any c > 0,
 /// a symmetric 3 × 3 block per row. The others: S (none), S diag(A)⁻¹ S (diagonal), S C⁻¹ S (block).
 struct BlockPreconditioner {
-    std::vector<Mat3> inverse;  ///< (rows) [1/kg]
+    UntouchedVector<Mat3> inverse;  ///< (rows) [1/kg]
 };
 
 /// Builds `kind` (one of none, diagonal, block, constrained_block) for all rows of the components.

@@ -39,7 +39,7 @@ struct StepReport {
     std::optional<std::uint64_t> rvm_whole;  ///< the same system undecomposed; only where it was asked for
     double whole_difference = 0;             ///< largest difference of the two solutions [m/s]
     bool converged = true;                   ///< every component reached the tolerance
-    std::uint32_t substeps = 1;  ///< parts that an explicit step was divided into
+    std::uint32_t substeps = 1;              ///< parts that an explicit step was divided into
     std::uint32_t rejected = 0;  ///< attempts undone before this one (guarded_step(), adaptive_step())
     std::uint32_t contacts = 0;
     /// Temporary springs of self-collision; they count as implicit or explicit too.

@@ -56,7 +56,7 @@ struct Rows {
     // ‖y‖² of y(row) in the stopping rule's norm.
     template <typename F>
     double measure(const F& y) const {
-        const std::vector<Mat3>& P = separate_stopping ? ws.stopping.inverse : ws.preconditioner.inverse;
+        const UntouchedVector<Mat3>& P = separate_stopping ? ws.stopping.inverse : ws.preconditioner.inverse;
         return sum([&](std::uint32_t row) {
             const Vec3 at = y(row);
             return at.dot(P[row] * at);
@@ -73,8 +73,9 @@ ComponentSolve solve_single(const Rows& rows, const Mat3& inverse) {
 
 ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
     const System& A = rows.A;
-    std::vector<Vec3>&x = rows.ws.x, &r = rows.ws.r, &p = rows.ws.p, &q = rows.ws.q;
-    const std::vector<Mat3>& P = rows.ws.preconditioner.inverse;
+    std::vector<Vec3>& x = rows.ws.x;
+    UntouchedVector<Vec3>&r = rows.ws.r, &p = rows.ws.p, &q = rows.ws.q;
+    const UntouchedVector<Mat3>& P = rows.ws.preconditioner.inverse;
     const bool swept = is_swept(options.preconditioner);
     ComponentSolve result;
 

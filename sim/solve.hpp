@@ -31,7 +31,8 @@ struct ComponentSolve {
 struct SolveWorkspace {
     BlockPreconditioner preconditioner, stopping;
     SweepPreconditioner sweeps;                 ///< for ssor and ic0 only
-    std::vector<Vec3> x, r, p, q;               ///< (rows)
+    std::vector<Vec3> x;                        ///< (rows)
+    UntouchedVector<Vec3> r, p, q;              ///< (rows)
     std::vector<double> partials;               ///< (chunks of rows)
     std::vector<const Constraint*> constraint;  ///< (rows) null: free
 };

@@ -26,9 +26,11 @@ void add_forces(const ClothModel& model, StepWorkspace& ws) {
                 f += other > p ? force[s] : Vec3(-force[s]);
             }
         };
-        if (!ws.rowwise) {
-            gather(model.spring_adjacency, ws.extension.force);
-            gather(model.bend_adjacency, ws.bend_is_implicit ? ws.implicit_bend.forces.force : ws.bend);
+        if (!ws.rowwise) gather(model.spring_adjacency, ws.extension.force);
+        if (ws.bend_is_implicit) {
+            gather(ws.bend_adjacency, ws.implicit_bend.forces.force);
+        } else if (!ws.rowwise) {
+            gather(ws.bend_adjacency, ws.bend);
         }
         if (model.has_temporary_springs()) gather(ws.self.adjacency, ws.self.forces.force);
         const Vec3 friction = rubbed ? ws.friction[p] : Vec3(Vec3::Zero());
@@ -134,8 +136,7 @@ Families families_of(const ClothModel& model, const StepWorkspace& ws) {
     add({&model.springs, &model.spring_adjacency, &ws.extension, {}, at});
     if (model.has_temporary_springs())
         add({&ws.self.springs, &ws.self.adjacency, &ws.self.forces, ws.drift_from_start});
-    if (ws.bend_is_implicit)
-        add({&ws.implicit_bend.springs, &model.bend_adjacency, &ws.implicit_bend.forces});
+    if (ws.bend_is_implicit) add({&ws.implicit_bend.springs, &ws.bend_adjacency, &ws.implicit_bend.forces});
     return families;
 }
 
@@ -148,14 +149,18 @@ void explicit_forces(const ClothModel& model, const StepOptions& options, double
         scheme.implicit_bend && options.bend == BendTreatment::scheme && model.bends.size() > 0;
     const bool at_start =
         stage.x_linear.empty() && (options.activation != Activation::ahead || scheme.multistep);
-    ws.rowwise = options.sweep && at_start && !ws.bend_is_implicit &&
+    ws.rowwise = options.sweep && at_start &&
                  ws.rows.prepare(model, ws.bend_limit,
                                  {h, scheme.splitting(options.threshold), options.activation_band});
     if (ws.rowwise) {
         ws.gathered.resize(model.size());
         ws.rows.place(stage.x_at, stage.v_at);
-        ws.rows.bend();
-    } else if (!ws.bend_is_implicit) {
+        ws.rows.bend(!ws.bend_is_implicit);
+    }
+    const bool by_spring = ws.bend_is_implicit || !ws.rowwise;
+    if (by_spring && ws.bend_adjacency.start.size() != model.size() + 1)
+        ws.bend_adjacency = adjacency_of(model.size(), model.bends.i, model.bends.j);
+    if (!ws.rowwise && !ws.bend_is_implicit) {
         ws.bend.resize(model.bends.size());
         bend_forces(model.bends, ws.bend_limit, stage.x_at, ws.bend);
     }
@@ -255,10 +260,11 @@ void iterate(const ClothModel& model, const StepOptions& options, double h, Stag
              StepWorkspace& ws, StepReport& report) {
     Stage& stage = ws.stage;
     stage.x_linear.clear();
+    stage.own_at();
     const auto advance = [&](double share) {
         parallel_each(model.size(), [&](std::size_t p) {
-            stage.v_at[p] += share * ws.dv[p];
-            stage.x_at[p] = ws.base[p] + stage.h * stage.v_at[p];
+            stage.own.v_at[p] += share * ws.dv[p];
+            stage.own.x_at[p] = ws.base[p] + stage.h * stage.v_at[p];
         });
         if (ws.rowwise) ws.rows.place(stage.x_at, stage.v_at);
         ws.taut.clear();

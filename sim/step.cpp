@@ -142,7 +142,7 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     const Scheme& scheme = scheme_of(options.integrator);
     Stage& stage = ws.stage;
     scheme.begin(state, h, stage);
-    ws.base = stage.x;
+    ws.base.assign(stage.x.begin(), stage.x.end());
     timer.lap(report.times.advance);
 
     // Constraints (Sec. 4; Baraff & Witkin 1998): S and z

@@ -54,6 +54,7 @@ struct StepWorkspace {
     BendLimit bend_limit;
     std::vector<Vec3> bend;      ///< (bend springs) N; empty where they are implicit
     ImplicitBend implicit_bend;  ///< empty where they are explicit
+    Adjacency bend_adjacency;    ///< empty where forces are gathered along rows
     bool bend_is_implicit = false;
     std::vector<Vec3> air;               ///< (cells) N; empty without wind
     double t_end = 0;                    ///< s, the end of the step: what stitches are to have reached

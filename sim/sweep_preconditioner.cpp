@@ -29,7 +29,7 @@ Mat3 bordered(const Mat3& C, const Constraint* c) {
 void build_sweeps(const System& A, const Components& components, const Constraints& constraints,
                   const BlockPreconditioner& blocks, SweepPreconditioner& out) {
     const std::size_t rows = components.start.back();
-    out.inverse = blocks.inverse;
+    out.inverse.assign(blocks.inverse.begin(), blocks.inverse.end());
     out.carry.resize(A.rows());
     out.start.assign(rows + 1, 0);
     parallel_each(rows, [&](std::size_t row) {

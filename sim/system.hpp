@@ -26,8 +26,8 @@ struct System {
     std::vector<std::uint32_t> row_of;    ///< (particles)
     std::vector<std::uint32_t> start;     ///< (rows + 1) of `entries`
     std::vector<Entry> entries;           ///< off-diagonal blocks
-    std::vector<Mat3> diagonal;           ///< (rows) [kg]
-    std::vector<Vec3> b;                  ///< (rows) [kg·m/s]
+    UntouchedVector<Mat3> diagonal;       ///< (rows) [kg]
+    UntouchedVector<Vec3> b;              ///< (rows) [kg·m/s]
     std::vector<std::uint8_t> elsewhere;  ///< (components) 1: assembled and solved elsewhere; empty: none
     std::size_t rows() const { return diagonal.size(); }
 };

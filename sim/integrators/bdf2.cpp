@@ -15,8 +15,9 @@ void begin_trapezoidal(const ClothState& state, double h, Stage& stage) {
     stage.x_at = state.x;
     stage.x_linear.clear();
     stage.v = stage.v_at = state.v;
-    stage.x.resize(state.x.size());
-    parallel_each(state.x.size(), [&](std::size_t p) { stage.x[p] = state.x[p] + 0.5 * h * state.v[p]; });
+    stage.own.x.resize(state.x.size());
+    parallel_each(state.x.size(), [&](std::size_t p) { stage.own.x[p] = state.x[p] + 0.5 * h * state.v[p]; });
+    stage.x = stage.own.x;
 }
 
 }  // namespace
@@ -55,15 +56,20 @@ void begin_bdf2(const ClothState& state, double h, Stage& stage) {
     stage.x_linear = state.x;
     const double now = (1 + w) * (1 + w) / (1 + 2 * w), before = w * w / (1 + 2 * w);
     stage.h = stage.h_force = h * (1 + w) / (1 + 2 * w);
-    for (std::vector<Vec3>* y : {&stage.x, &stage.v, &stage.x_at, &stage.v_at}) y->resize(n);
+    Stage::Own& own = stage.own;
+    for (std::vector<Vec3>* y : {&own.x, &own.v, &own.x_at, &own.v_at}) y->resize(n);
     parallel_each(n, [&](std::size_t p) {
-        stage.x[p] = now * state.x[p] - before * state.x_previous[p];
-        stage.v[p] = now * state.v[p] - before * state.v_previous[p];
+        own.x[p] = now * state.x[p] - before * state.x_previous[p];
+        own.v[p] = now * state.v[p] - before * state.v_previous[p];
         const Vec3 moved = state.x[p] - state.x_previous[p];
-        stage.x_at[p] = state.x[p] + w / 3 * moved + 2.0 / 3 * h * state.v[p];
-        stage.v_at[p] = state.v[p] + 0.5 * w * (state.v[p] - state.v_previous[p]) +
-                        w * (state.v[p] - moved / state.h_previous);
+        own.x_at[p] = state.x[p] + w / 3 * moved + 2.0 / 3 * h * state.v[p];
+        own.v_at[p] = state.v[p] + 0.5 * w * (state.v[p] - state.v_previous[p]) +
+                      w * (state.v[p] - moved / state.h_previous);
     });
+    stage.x = own.x;
+    stage.v = own.v;
+    stage.x_at = own.x_at;
+    stage.v_at = own.v_at;
 }
 
 }  // namespace unravel

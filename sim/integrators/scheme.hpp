@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "sim/forces/extension.hpp"
@@ -18,11 +19,22 @@ namespace unravel {
 /// Backward Euler: x̃ = x* = x, ṽ = v* = v, h̃ = h_f = h, which is Eq. (5). Implicit springs may be linearised
 /// at positions of their own in place of x*, explicit ones never.
 struct Stage {
-    double h = 0;                  ///< s, h̃
-    double h_force = 0;            ///< s, h_f; differs from h̃ where f* stands for an old force too
-    std::vector<Vec3> x, v;        ///< (particles) x̃ [m] and ṽ [m/s]
-    std::vector<Vec3> x_at, v_at;  ///< (particles) x* [m] and v* [m/s]
-    std::vector<Vec3> x_linear;    ///< (particles) where implicit springs are linearised [m]; empty: at x*
+    double h = 0;                      ///< s, h̃
+    double h_force = 0;                ///< s, h_f; differs from h̃ where f* stands for an old force too
+    std::span<const Vec3> x, v;        ///< (particles) x̃ [m] and ṽ [m/s]
+    std::span<const Vec3> x_at, v_at;  ///< (particles) x* [m] and v* [m/s]
+    std::vector<Vec3> x_linear;  ///< (particles) where implicit springs are linearised [m]; empty: at x*
+    /// What is none of the state's: memory for the spans above.
+    struct Own {
+        std::vector<Vec3> x, v, x_at, v_at;
+    } own;
+    /// Makes x* and v* the stage's own, to be changed.
+    void own_at() {
+        if (x_at.data() != own.x_at.data()) own.x_at.assign(x_at.begin(), x_at.end());
+        if (v_at.data() != own.v_at.data()) own.v_at.assign(v_at.begin(), v_at.end());
+        x_at = own.x_at;
+        v_at = own.v_at;
+    }
 };
 
 /// A time stepping scheme. A new one is its file, its line in scheme_of(), and its test.

@@ -51,7 +51,9 @@ const std::array<MaterialPreset, 6> presets{{
     // Wang et al., "11oz black denim": 99% cotton, 1% spandex.
     // c11 205.4, c22 1013.9, c33 53.4, k 64.2e-6 and 97.0e-6
     {"denim", 0.324, fabric("denim", 411, 2028, 26.7, 2.0e-5)},
-    // Kawabata's means of 214 winter suitings, which normalise his hand equation KN-101:
+    // Kawabata's means of 214 winter suitings, which normalise his hand equation KN-101, as they are quoted
+    // (not
+    // checked against his book):
     // LT 0.608, log WT 0.962 (so EMT 6.0%), log B −0.867, log G −0.014, log W 1.421 (mg/cm²)
     {"wool", 0.264, fabric("wool", 1760, 1760, 54, 1.3e-5)},
     // Wang et al., "gray interlock": a T-shirt's knit, 60% cotton, 40% polyester.

@@ -22,8 +22,8 @@ struct RowCloth : GridRows {
     const GridSprings* grid = nullptr;
     GridTables tables;
     std::array<RowTable, 4> is_explicit;  // as extension_families
-    bool bends = false;
-    std::vector<double> pushed;  // row by row: x, y, z of bending and air; empty: neither
+    bool bends = false, bent = false;     // it has bend springs; they have been evaluated
+    std::vector<double> pushed;           // row by row: x, y, z of bending and air; empty: neither
 
     std::size_t bands() const { return (rows() + band_rows - 1) / band_rows; }
     Row pushed_row(std::size_t row) {
@@ -170,9 +170,13 @@ void RowForces::mark(const ClothModel& model, std::span<const Vec3> end, std::ve
     }
 }
 
-void RowForces::bend() {
+void RowForces::bend(bool acts) {
     for (RowCloth& cloth : memory_->cloths) {
-        if (!cloth.bends) continue;
+        cloth.bent = acts && cloth.bends;
+        if (!cloth.bent) {
+            std::fill(cloth.pushed.begin(), cloth.pushed.end(), 0.0);
+            continue;
+        }
         const auto base = [&](std::size_t row, std::size_t first, Flight& forces) {
             for (std::size_t f = 0; f < bend_families.size(); ++f) {
                 const GridFamily& family = bend_families[f];
@@ -207,7 +211,7 @@ void RowForces::blow(const ClothModel& model, double t) {
             const Row to = cloth.pushed_row(row);
             for (std::size_t c = 0; c < 3; ++c) {
                 for (std::size_t i = 0; i < cloth.columns(); ++i)
-                    to[c][i] = (cloth.bends ? to[c][i] : 0) + f[c][i];
+                    to[c][i] = (cloth.bent ? to[c][i] : 0) + f[c][i];
             }
         };
         memory_->over_bands(cloth, 1, base, done);

@@ -47,8 +47,8 @@ public:
     /// Marks stretch and shear springs that are longer than L at `end`, (particles) [m]; `taut` (springs).
     void mark(const ClothModel& model, std::span<const Vec3> end, std::vector<std::uint8_t>& taut);
 
-    /// Bending, evaluated for the step: part of all that gather() gives until this is called again.
-    void bend();
+    /// Begins with what gather() is to give besides stretch and shear: bending, if it `acts`, or nothing.
+    void bend(bool acts);
     /// The air at time t; after bend().
     void blow(const ClothModel& model, double t);
 

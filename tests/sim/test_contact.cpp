@@ -1,6 +1,7 @@
 // Contact with solids: what one, two and three contacts leave free, the pinch between two solids, and what
 // friction does on a turning, a pulled and an edged support.
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -140,6 +141,30 @@ TEST_CASE("a spinning sphere takes its cloth along by friction") {
         return angle / degree;
     };
     CHECK(turned(0.8) == Approx(90).margin(3));
+}
+
+TEST_CASE("a spinning sphere without friction gives its cloth no angular momentum") {
+    // Normals pass through the axis, so that whatever holds the cloth up turns nothing.
+    const auto momentum = [](double mu) {
+        Scene scene;
+        Cloth cloth = sheet(13, 0.305);
+        cloth.size = {0.24, 0.24};
+        cloth.center.x() = 0.05;
+        scene.cloths.push_back(cloth);
+        Solid sphere;
+        sphere.friction = {mu, mu};
+        sphere.motion = {{0, {0, 0, 0}, {0, 0, 0}}, {1, {0, 0, 0}, {0, 360, 0}}};
+        scene.solids.push_back(sphere);
+        Simulation simulation = start_simulation(scene);
+        advance(simulation, 0.4, 1.0 / 400);
+        double sum = 0;
+        for (std::size_t p = 0; p < simulation.model.size(); ++p)
+            sum += simulation.model.mass[p] * simulation.state.x[p].cross(simulation.state.v[p]).y();
+        return sum;
+    };
+    const double dragged = momentum(0.6);
+    CHECK(dragged > 0);
+    CHECK(std::abs(momentum(0)) < 1e-6 * dragged);
 }
 
 TEST_CASE("a cloth pulled over a table is as taut as kinetic friction makes it") {

@@ -19,8 +19,8 @@ std::vector<Vec3> forces_of(const InspectedStep& step) {
     const Integrator used = options.integrator == Integrator::automatic ? ws.chosen : options.integrator;
     const Splitting splitting = scheme_of(used).splitting(options.threshold);
     const bool coupled = used != Integrator::explicit_;  // a swept step leaves no stage behind
-    const std::vector<Vec3>&x = coupled ? ws.stage.x_at : step.before.x,
-          &v = coupled ? ws.stage.v_at : step.before.v;
+    const std::span<const Vec3> x = coupled ? ws.stage.x_at : std::span<const Vec3>(step.before.x),
+                                v = coupled ? ws.stage.v_at : std::span<const Vec3>(step.before.v);
     ExtensionForces forces;
     extension_forces(simulation.model.springs, simulation.model.mass, x, v, step.report.h, splitting,
                      options.activation_band, forces,

@@ -37,7 +37,6 @@ void pin(Problem& p, std::uint32_t particle) {
 void finish(Problem& p) {
     p.model.springs.stretch_count = p.model.springs.size();
     p.model.spring_adjacency = adjacency_of(p.start.x.size(), p.model.springs.i, p.model.springs.j);
-    p.model.bend_adjacency = adjacency_of(p.start.x.size(), {}, {});
 }
 
 // n equal masses between two walls on taut springs, moved along the line: x_k = k d + a sin(π k/(n+1)) cos
@@ -137,7 +136,6 @@ Problem zigzag() {
         bends.stiffness.push_back(4e-3);
         bends.slope.push_back(5);
     }
-    p.model.bend_adjacency = adjacency_of(p.start.x.size(), bends.i, bends.j);
     return p;
 }
 
