@@ -17,6 +17,9 @@ public:
     /// From (rows × width) values.
     void build(std::span<const double> values, std::size_t width);
     const double* row(std::size_t j) const { return values_.data() + offset_[j]; }
+    std::size_t bytes() const {
+        return values_.size() * sizeof(double) + offset_.size() * sizeof(std::size_t);
+    }
 
 private:
     std::vector<std::size_t> offset_;  // (rows)

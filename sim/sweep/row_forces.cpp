@@ -130,6 +130,20 @@ bool RowForces::prepare(const ClothModel& model, const BendLimit& limit, const R
     return memory.fits;
 }
 
+std::size_t RowForces::bytes() const {
+    std::size_t sum = 0;
+    for (const RowCloth& cloth : memory_->cloths) {
+        sum += (cloth.state.size() + cloth.pushed.size()) * sizeof(double);
+        sum += cloth.tables.mass.bytes() + cloth.tables.inverse_mass.bytes();
+        for (const GridTables::Extension& t : cloth.tables.extension)
+            sum += t.stiffness.bytes() + t.damping.bytes();
+        for (const GridTables::Bend& t : cloth.tables.bend)
+            sum += t.arc.bytes() + t.slope.bytes() + t.crossing.bytes();
+        for (const RowTable& t : cloth.is_explicit) sum += t.bytes();
+    }
+    return sum;
+}
+
 void RowForces::place(std::span<const Vec3> x, std::span<const Vec3> v) {
     for (RowCloth& cloth : memory_->cloths) take_rows(x, v, cloth);
 }

@@ -56,6 +56,9 @@ public:
     void gather(const ClothModel& model, std::span<const std::uint8_t> taut, std::span<Vec3> force,
                 std::vector<SpringState>& state);
 
+    /// Of what it keeps for the cloth, tables included.
+    std::size_t bytes() const;
+
 private:
     std::unique_ptr<RowForcesMemory> memory_;
 };

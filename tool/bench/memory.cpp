@@ -29,9 +29,16 @@ double highest() {
 }
 
 // What is used of them: what is set aside besides is never touched, so that it takes no memory.
-template <typename... T>
-double bytes(const std::vector<T>&... arrays) {
+template <typename... T, typename... A>
+double bytes(const std::vector<T, A>&... arrays) {
     return (0.0 + ... + static_cast<double>(arrays.size() * sizeof(T)));
+}
+// Share of the rows that are solved as such: only those are ever written in arrays over rows.
+double row_share(const System& system, const Components& components) {
+    if (system.elsewhere.empty() || system.rows() == 0) return 1;
+    double away = 0;
+    for (std::size_t c = 0; c < components.count(); ++c) away += system.elsewhere[c] ? components.size(c) : 0;
+    return 1 - away / static_cast<double>(system.rows());
 }
 double bytes(const ExtensionSprings& s) {
     return bytes(s.i, s.j, s.rest, s.stiffness, s.damping);
@@ -89,11 +96,13 @@ MemoryRecord account_memory(const Simulation& simulation, double peak) {
     };
     add("stretch and shear springs", bytes(m.springs));
     add("bend springs", bytes(m.bends.i, m.bends.j, m.bends.rest, m.bends.stiffness, m.bends.slope));
-    add("whose springs: adjacency", bytes(m.spring_adjacency) + bytes(m.bend_adjacency));
+    add("whose springs: adjacency", bytes(m.spring_adjacency) + bytes(w.bend_adjacency));
     add("air's cells", bytes(m.air.corners, m.air.start, m.air.cells));
     add("mass", bytes(m.mass));
     add("state, and the one before", bytes(simulation.state) + bytes(w.before));
-    add("stage: x~, v~, x*, v*", bytes(w.stage.x, w.stage.v, w.stage.x_at, w.stage.v_at, w.stage.x_linear));
+    add("stage: x~, v~, x*, v*",
+        bytes(w.stage.own.x, w.stage.own.v, w.stage.own.x_at, w.stage.own.v_at, w.stage.x_linear));
+    add("forces along rows", static_cast<double>(w.rows.bytes()) + bytes(w.gathered));
     add("forces of stretch and shear", bytes(w.extension));
     add("forces of bending and its limit", bytes(w.bend, w.bend_limit.slope, w.bend_limit.crossing) +
                                                bytes(w.implicit_bend.springs) +
@@ -106,10 +115,12 @@ MemoryRecord account_memory(const Simulation& simulation, double peak) {
                               bytes(w.self.candidate_i, w.self.candidate_j, w.self.x_searched,
                                     w.self.voxel_start, w.self.voxel_particles, w.self.voxel_of));
     add("components", bytes(w.parent, w.components.label, w.components.order, w.components.start));
-    add("system by rows: A, b", bytes(w.system.row_of, w.system.start, w.system.entries, w.system.diagonal,
-                                      w.system.b, w.system.elsewhere));
-    add("solver by rows", bytes(w.solve.preconditioner.inverse, w.solve.stopping.inverse, w.solve.x,
-                                w.solve.r, w.solve.p, w.solve.q, w.solve.constraint));
+    const double by_rows = row_share(w.system, w.components);
+    add("system by rows: A, b", bytes(w.system.row_of, w.system.start, w.system.entries, w.system.elsewhere) +
+                                    by_rows * bytes(w.system.diagonal, w.system.b));
+    add("solver by rows", bytes(w.solve.x, w.solve.constraint) +
+                              by_rows * (bytes(w.solve.preconditioner.inverse, w.solve.stopping.inverse) +
+                                         bytes(w.solve.r, w.solve.p, w.solve.q)));
     add("systems on the grid", bytes(w.grid_solves));
     add("their CG vectors", bytes_of_cg(w.grid_solves));
     add("measuring", bytes(w.measure.strain, w.measure.partials));
