@@ -109,11 +109,15 @@ std::span<const StatsColumn> stats_columns() {
     return columns;
 }
 
-std::string stats_csv(std::span<const StepReport> reports) {
+std::string stats_header() {
     std::string csv;
     for (const StatsColumn& column : columns)
         csv += csv.empty() ? column.name : fmt::format(",{}", column.name);
-    csv += '\n';
+    return csv + '\n';
+}
+
+std::string stats_rows(std::span<const StepReport> reports) {
+    std::string csv;
     for (const StepReport& report : reports) {
         for (const StatsColumn& column : columns) {
             if (&column != columns) csv += ',';

@@ -19,9 +19,10 @@ struct StatsColumn {
 /// All columns, in the file's order.
 std::span<const StatsColumn> stats_columns();
 
-/// The whole file: a header, then one row per step. Numbers are written so that they read back to the same
-/// bits.
-std::string stats_csv(std::span<const StepReport> reports);
+/// The file's first line.
+std::string stats_header();
+/// One line per step. Numbers are written so that they read back to the same bits.
+std::string stats_rows(std::span<const StepReport> reports);
 
 /// Puts the stage times of an earlier stats.csv into reports of the same steps (frame records hold none).
 /// Rows that do not parse are left alone.

@@ -108,19 +108,19 @@ int command_render(const Options& options) {
     const int last = std::min(frames - 1, clip_options.last);
     Progress progress(scene.name, last - clip_options.first + 1, options.quiet);
     int next = 0;
-    PageRecorder recorder(model);
-    std::vector<StepReport> reports;
+    PageRecorder recorder(model, folder.root);
+    SpooledList<StepReport> spooled(folder.root);
     const auto read = [&] {
         FrameRecord record = read_record(cached.record(next++), hash, model.size(), model.springs.size());
         recorder.see(record);
-        reports.insert(reports.end(), record.reports.begin(), record.reports.end());
+        spooled.append(record.reports);
         return record;
     };
     const FrameSource source = [&]() -> std::optional<FrameRecord> {
         if (next > last || InterruptWatch::requested()) return std::nullopt;
         return read();
     };
-    Previews previews = previews_of(scene, clip_options);
+    Previews previews = previews_of(scene, clip_options, folder.root);
     clip_options.picture = take_previews(previews);
     const ClipReport report = make_clip(scene, model, placement, folder, clip_options, source,
                                         [&](int frame) { progress.show(frame - clip_options.first + 1, 0); });
@@ -132,6 +132,7 @@ int command_render(const Options& options) {
     }
     // The page shows the whole run, also where only some frames were drawn anew.
     while (next < frames) read();
+    std::vector<StepReport> reports = spooled.read_all();
     if (std::filesystem::exists(cached.stats()))
         take_times(read_whole_text(cached.stats(), largest_stats), reports);
     nlohmann::ordered_json run = earlier_run(cached);
@@ -139,8 +140,7 @@ int command_render(const Options& options) {
     scene.name = run.value("scene", cached.root.filename().string());
     run["renderer"] = {{"name", report.renderer}, {"why", report.renderer_summary}};
     run["encoder"] = report.encoders;
-    write_whole_file(folder.report(), report_page(scene, model, folder, recorder.frames(), reports, previews,
-                                                  page_facts(run)));
+    write_report_page(scene, model, folder, recorder, reports, previews, page_facts(run));
     print_files(options, folder, clip_options, report);
     if (!options.quiet) {
         fmt::print("  {}\n", folder.report().string());

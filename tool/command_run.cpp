@@ -82,8 +82,8 @@ int make_run(const Options& options, bool pictures) {
         cached_frames(folder, scene, hash, simulation.model.size(), simulation.model.springs.size());
     clip_options.reuse_pictures = existing == Existing::resume;
     RunSource source(scene, folder, hash, simulation, cached, threads);
-    PageRecorder recorder(simulation.model);
-    Previews previews = previews_of(scene, clip_options);
+    PageRecorder recorder(simulation.model, folder.root);
+    Previews previews = previews_of(scene, clip_options, folder.root);
     if (pictures) {
         clip_options.picture = take_previews(previews);
     }
@@ -114,8 +114,8 @@ int make_run(const Options& options, bool pictures) {
         json["wall_seconds"] =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         write_whole_file(folder.run_json(), json.dump(2) + "\n");
-        write_whole_file(folder.report(), report_page(scene, simulation.model, folder, recorder.frames(),
-                                                      source.reports(), previews, page_facts(json)));
+        write_report_page(scene, simulation.model, folder, recorder, source.reports(), previews,
+                          page_facts(json));
         print_summary(options, folder, json);
     };
     if (pictures) {

@@ -73,7 +73,8 @@ Json run_json(const Scene& scene, const Simulation& simulation, const RunSource&
                        {"bend", simulation.model.bends.size()}};
     json["fps"] = scene.clip.fps;
     json["frames"] = source.hashes().size();
-    json["steps"] = source.reports().size();
+    const std::vector<StepReport> reports = source.reports();
+    json["steps"] = reports.size();
     if (clip) {
         json["renderer"] = {
             {"name", clip->renderer}, {"software", clip->software}, {"why", clip->renderer_summary}};
@@ -87,7 +88,7 @@ Json run_json(const Scene& scene, const Simulation& simulation, const RunSource&
     for (const Effect& effect : list_effects(scene)) {
         json["effects"][effect.name] = {{"on", effect.on}, {"because", effect.because}};
     }
-    json["totals"] = totals(source.reports(), simulation.model.size());
+    json["totals"] = totals(reports, simulation.model.size());
     for (const std::uint64_t hash : source.hashes())
         json["state_hashes"].push_back(fmt::format("{:016x}", hash));
     return json;

@@ -1,5 +1,7 @@
 #include "tool/run_source.hpp"
 
+#include <algorithm>
+
 #include "base/whole_file.hpp"
 #include "sim/stats.hpp"
 #include "tool/interrupt.hpp"
@@ -11,6 +13,9 @@ namespace {
 // stats.csv is written anew this often, so that it can be looked at while the run goes on.
 constexpr std::chrono::seconds stats_period{5};
 
+// As many steps are turned into text at a time.
+constexpr std::size_t rows_at_once = 256;
+
 }  // namespace
 
 RunSource::RunSource(const Scene& scene, const RunFolder& folder, std::uint64_t scene_hash,
@@ -20,11 +25,8 @@ RunSource::RunSource(const Scene& scene, const RunFolder& folder, std::uint64_t 
       scene_hash_(scene_hash),
       simulation_(simulation),
       cached_(cached),
-      arena_(threads) {
-    if (cached > 0 && std::filesystem::exists(folder.stats())) {
-        earlier_stats_ = read_whole_text(folder.stats(), largest_stats);
-    }
-}
+      arena_(threads),
+      reports_(folder.root) {}
 
 std::optional<FrameRecord> RunSource::next() {
     if (frame_ >= scene_.clip.frames() || InterruptWatch::requested()) return std::nullopt;
@@ -40,9 +42,9 @@ std::optional<FrameRecord> RunSource::next() {
         write_record(folder_.record(frame_), scene_hash_, record);
     }
     ++frame_;
-    reports_.insert(reports_.end(), record.reports.begin(), record.reports.end());
+    reports_.append(record.reports);
     hashes_.push_back(state_hash(record.state));
-    if (frame_ == cached_) take_times(earlier_stats_, reports_);
+    if (frame_ == cached_) take_earlier_times();
     if (std::chrono::steady_clock::now() - stats_written_ > stats_period) {
         write_stats();
         stats_written_ = std::chrono::steady_clock::now();
@@ -54,8 +56,20 @@ FrameRecord RunSource::simulate() {
     return frame_ == 0 ? present_record(simulation_) : next_record(simulation_);
 }
 
+// Of the run that is gone on with: the cache holds no times.
+void RunSource::take_earlier_times() {
+    if (!std::filesystem::exists(folder_.stats())) return;
+    std::vector<StepReport> reports = reports_.read_all();
+    take_times(read_whole_text(folder_.stats(), largest_stats), reports);
+    reports_.replace(reports);
+}
+
 void RunSource::write_stats() const {
-    write_whole_file(folder_.stats(), stats_csv(reports_));
+    WholeFile file(folder_.stats());
+    file.write(stats_header());
+    for (std::size_t first = 0; first < reports_.size(); first += rows_at_once)
+        file.write(stats_rows(reports_.read(first, std::min(rows_at_once, reports_.size() - first))));
+    file.commit();
 }
 
 }  // namespace unravel

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/spool.hpp"
 #include "sim/simulate.hpp"
 #include "tool/run_folder.hpp"
 
@@ -27,13 +28,15 @@ public:
     /// Writes stats.csv with all rows so far.
     void write_stats() const;
 
-    const std::vector<StepReport>& reports() const { return reports_; }
+    /// Of all steps so far, read back from where they were put aside: a run holds no more the longer it is.
+    std::vector<StepReport> reports() const { return reports_.read_all(); }
     const std::vector<std::uint64_t>& hashes() const { return hashes_; }
     double seconds() const { return seconds_; }  ///< spent in simulating
     int cached() const { return cached_; }
 
 private:
     FrameRecord simulate();
+    void take_earlier_times();
 
     const Scene& scene_;
     const RunFolder& folder_;
@@ -41,8 +44,7 @@ private:
     Simulation& simulation_;
     int cached_, frame_ = 0;
     tbb::task_arena arena_;
-    std::string earlier_stats_;  // of the run that is gone on with: the cache holds no times
-    std::vector<StepReport> reports_;
+    SpooledList<StepReport> reports_;
     std::vector<std::uint64_t> hashes_;  // one per frame
     double seconds_ = 0;
     std::chrono::steady_clock::time_point stats_written_ = std::chrono::steady_clock::now();

@@ -1,5 +1,8 @@
 #include <fmt/core.h>
 
+#include <cmath>
+#include <type_traits>
+
 #include "sim/scene/describe.hpp"
 #include "sim/scene/load.hpp"
 
@@ -16,8 +19,13 @@ std::string toml_text(std::string_view text) {
     return out + '"';
 }
 
-/// Writes one table: its own lines first, then the tables in it, as TOML asks. fmt's {} for a double is the
-/// shortest text that reads back to the same value.
+// fmt's {} is the shortest text that reads back to the same value; but "-0" would be TOML's integer, which
+// knows no sign of zero.
+std::string number_text(double value) {
+    return value == 0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value);
+}
+
+/// Writes one table: its own lines first, then the tables in it, as TOML asks.
 class Writer : public Fields {
 public:
     explicit Writer(std::string path) : path_(std::move(path)) {}
@@ -31,9 +39,9 @@ public:
     void integer(const Key& key, int& value, int, int) override { put(key, fmt::format("{}", value)); }
     void integers(const Key& key, std::span<int> values, int, int) override { put(key, list_of(values)); }
     void seed(const Key& key, std::uint32_t& value) override { put(key, fmt::format("{}", value)); }
-    void number(const Key& key, double& value, const Bounds&) override { put(key, fmt::format("{}", value)); }
+    void number(const Key& key, double& value, const Bounds&) override { put(key, number_text(value)); }
     void optional_number(const Key& key, std::optional<double>& value, const Bounds&) override {
-        if (value) put(key, fmt::format("{}", *value));
+        if (value) put(key, number_text(*value));
     }
     void numbers(const Key& key, std::span<double> values, const Bounds&) override {
         put(key, list_of(values));
@@ -91,7 +99,13 @@ private:
     template <class T>
     static std::string list_of(std::span<T> values) {
         std::string out = "[";
-        for (std::size_t i = 0; i < values.size(); ++i) out += fmt::format("{}{}", i ? ", " : "", values[i]);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            out += i ? ", " : "";
+            if constexpr (std::is_same_v<T, double>)
+                out += number_text(values[i]);
+            else
+                out += fmt::format("{}", values[i]);
+        }
         return out + "]";
     }
     std::string join(std::string_view between) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/whole_file.hpp"
 #include "sim/effects.hpp"
 #include "sim/scene/load.hpp"
 #include "tool/progress.hpp"
@@ -27,13 +28,13 @@ double rounded(double value) {
     return std::stod(fmt::format("{:.3g}", value));
 }
 
-Json frame_json(const PageFrame& frame) {
+Json frame_json(const PageFrame& frame, const std::vector<ComponentRow>& rows) {
     Json json;
     json["number"] = frame.number;
     json["time"] = frame.time;
     if (frame.last_step > 0) json["steps"] = {frame.first_step, frame.last_step};
     json["components"] = Json::array();
-    for (const ComponentRow& row : frame.components) {
+    for (const ComponentRow& row : rows) {
         json["components"].push_back({row.id, hex(row.color), row.particles, row.boundary, row.springs,
                                       row.solve.iterations, row.solve.rvm, rounded(row.solve.residual)});
     }
@@ -49,15 +50,13 @@ Json frame_json(const PageFrame& frame) {
 
 // Which pictures go into the page. Too many of them: none where the folder has them as files, else of every
 // k-th frame.
-Json inlined(const Previews& previews, const std::string& view, bool on_disk) {
-    Json json = Json::object();
-    if (!previews.within_budget() && on_disk) return json;
+std::vector<int> inlined(const Previews& previews, const std::string& view, bool on_disk) {
+    if (!previews.within_budget() && on_disk) return {};
     const std::size_t every = previews.bytes() / picture_budget + 1;
-    std::size_t k = 0;
-    for (const auto& [number, text] : previews.of(view)) {
-        if (k++ % every == 0) json[std::to_string(number)] = text;
-    }
-    return json;
+    const std::vector<int> all = previews.frames(view);
+    std::vector<int> some;
+    for (std::size_t k = 0; k < all.size(); k += every) some.push_back(all[k]);
+    return some;
 }
 
 std::vector<int> pictures_on_disk(const RunFolder& folder, const std::string& view,
@@ -100,10 +99,10 @@ PageFacts page_facts(const Json& run) {
     return facts;
 }
 
-Previews previews_of(const Scene& scene, const ClipOptions& options) {
+Previews previews_of(const Scene& scene, const ClipOptions& options, const std::filesystem::path& folder) {
     const int frames = std::max(0, options.last - options.first + 1);
     return Previews(scene.clip.size[0], scene.clip.size[1],
-                    frames * static_cast<int>(std::ssize(page_layouts)), picture_budget);
+                    frames * static_cast<int>(std::ssize(page_layouts)), picture_budget, folder);
 }
 
 std::function<void(const ClipView&, int, const Image&)> take_previews(Previews& previews) {
@@ -113,15 +112,17 @@ std::function<void(const ClipView&, int, const Image&)> take_previews(Previews& 
     };
 }
 
-std::string report_page(const Scene& scene, const ClothModel& model, const RunFolder& folder,
-                        const std::vector<PageFrame>& frames, std::span<const StepReport> reports,
-                        const Previews& previews, const PageFacts& facts) {
-    Json data, pictures;
+void write_report_page(const Scene& scene, const ClothModel& model, const RunFolder& folder,
+                       const PageRecorder& recorder, std::span<const StepReport> reports,
+                       const Previews& previews, const PageFacts& facts) {
+    const std::vector<PageFrame>& frames = recorder.frames();
+    Json data;
+    std::vector<std::pair<std::string, std::vector<int>>> pictures;  // views and the frames within the page
     data["views"] = Json::array();
     for (const Layout layout : page_layouts) {
         const std::string name = layout_name(layout);
         const std::vector<int> files = pictures_on_disk(folder, name, frames);
-        Json inside = inlined(previews, name, !files.empty());
+        std::vector<int> inside = inlined(previews, name, !files.empty());
         if (files.empty() && inside.empty()) continue;
         Json view{{"name", name}};
         if (!files.empty()) {
@@ -129,12 +130,10 @@ std::string report_page(const Scene& scene, const ClothModel& model, const RunFo
             view["numbers"] = files;
         }
         data["views"].push_back(view);
-        pictures[name] = std::move(inside);
+        pictures.emplace_back(name, std::move(inside));
     }
     data["size"] = scene.clip.size;
     data["fps"] = scene.clip.fps;
-    data["frames"] = Json::array();
-    for (const PageFrame& frame : frames) data["frames"].push_back(frame_json(frame));
     data["series"] = page_series(frames, reports, model);
     data["summary"] = page_summary(scene, model, frames, reports, facts.status);
     data["warnings"] = page_warnings(scene, frames, reports, facts.status);
@@ -145,16 +144,45 @@ std::string report_page(const Scene& scene, const ClothModel& model, const RunFo
     data["scene"] = scene_to_toml(scene);
     data["made"] = facts.made;
 
-    const std::string title = html_text(scene.name), data_text = script_safe(data);
-    const std::string pictures_text = script_safe(pictures.is_null() ? Json::object() : pictures);
-    return fill_page(page_file("report.html"), {{"title", title},
-                                                {"library_style", page_file("dygraph.min.css")},
-                                                {"style", page_file("report.css")},
-                                                {"data", data_text},
-                                                {"pictures", pictures_text},
-                                                {"library", page_file("dygraph.min.js")},
-                                                {"plots", page_file("report_plots.js")},
-                                                {"script", page_file("report.js")}});
+    // The page is written as it is made: with all its pictures it may be larger than the run that made it.
+    const LongText all_frames = [&](const TextSink& out) {
+        for (std::size_t k = 0; k < frames.size(); ++k) {
+            out(k == 0 ? "[" : ",\n");
+            out(script_safe(frame_json(frames[k], recorder.rows(frames[k]))));
+        }
+        out(frames.empty() ? "[]" : "]");
+    };
+    const LongText all_pictures = [&](const TextSink& out) {
+        out("{");
+        for (std::size_t v = 0; v < pictures.size(); ++v) {
+            const auto& [name, numbers] = pictures[v];
+            out(fmt::format("{}\"{}\":{{", v == 0 ? "" : ",\n", name));
+            for (std::size_t k = 0; k < numbers.size(); ++k)
+                out(fmt::format("{}\"{}\":\"{}\"", k == 0 ? "" : ",\n", numbers[k],
+                                previews.text(name, numbers[k])));
+            out("}");
+        }
+        out("}");
+    };
+    const auto text = [](std::string value) -> LongText {
+        return [value = std::move(value)](const TextSink& out) { out(value); };
+    };
+    const auto embedded = [](const char* name) -> LongText {
+        return [name](const TextSink& out) { out(page_file(name)); };
+    };
+    WholeFile file(folder.report());
+    fill_page(page_file("report.html"),
+              {{"title", text(html_text(scene.name))},
+               {"library_style", embedded("dygraph.min.css")},
+               {"style", embedded("report.css")},
+               {"data", text(script_safe(data))},
+               {"frames", all_frames},
+               {"pictures", all_pictures},
+               {"library", embedded("dygraph.min.js")},
+               {"plots", embedded("report_plots.js")},
+               {"script", embedded("report.js")}},
+              [&](std::string_view part) { file.write(part); });
+    file.commit();
 }
 
 }  // namespace unravel

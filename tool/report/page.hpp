@@ -22,7 +22,7 @@ struct PageFrame {
     int number = 0;
     double time = 0;                              ///< s
     std::uint64_t first_step = 0, last_step = 0;  ///< 0: frame 0, before any step
-    std::vector<ComponentRow> components;         ///< the largest, as component_table() sorts them
+    std::size_t first_row = 0, rows = 0;          ///< the largest components; PageRecorder::rows()
     struct {
         std::uint32_t count = 0, particles = 0, springs = 0;
         std::uint64_t iterations = 0, rvm = 0;
@@ -30,18 +30,23 @@ struct PageFrame {
 };
 
 /// Looks at the frames of a run as they pass by and keeps what its page needs of them. Must see every frame
-/// from the first, in order: colours are stable in time.
+/// from the first, in order: colours are stable in time. Tables wait in the file system of `folder`.
 class PageRecorder {
 public:
-    explicit PageRecorder(const ClothModel& model);
+    PageRecorder(const ClothModel& model, const std::filesystem::path& folder);
     void see(const FrameRecord& record);
     const std::vector<PageFrame>& frames() const { return frames_; }
+    /// A frame's largest components, as component_table() sorts them.
+    std::vector<ComponentRow> rows(const PageFrame& frame) const {
+        return rows_.read(frame.first_row, frame.rows);
+    }
 
 private:
     const ClothModel& model_;
     std::vector<std::array<std::uint32_t, 2>> edges_;
     ComponentColors colors_;
     std::vector<PageFrame> frames_;
+    SpooledList<ComponentRow> rows_;
 };
 
 /// What the page tells besides frames.
@@ -59,15 +64,15 @@ inline constexpr std::size_t picture_budget = std::size_t{24} << 20;
 /// Views that the page shows, both by the scene's first camera.
 inline constexpr Layout page_layouts[] = {Layout::textured, Layout::components};
 
-/// Previews for the pictures that a page of these options will show.
-Previews previews_of(const Scene& scene, const ClipOptions& options);
+/// Previews for the pictures that a page of these options will show, put aside near `folder`.
+Previews previews_of(const Scene& scene, const ClipOptions& options, const std::filesystem::path& folder);
 /// Takes the pictures of a clip that are the page's views.
 std::function<void(const ClipView&, int, const Image&)> take_previews(Previews& previews);
 
-/// The whole of report.html: one file that needs no other and no network. Pictures that do not fit the budget
-/// are linked where the folder has them. `reports` are all steps of the run, with their times.
-std::string report_page(const Scene& scene, const ClothModel& model, const RunFolder& folder,
-                        const std::vector<PageFrame>& frames, std::span<const StepReport> reports,
-                        const Previews& previews, const PageFacts& facts);
+/// Writes the folder's report.html: one file that needs no other and no network. Pictures that do not fit the
+/// budget are linked where the folder has them. `reports` are all steps of the run, with their times.
+void write_report_page(const Scene& scene, const ClothModel& model, const RunFolder& folder,
+                       const PageRecorder& recorder, std::span<const StepReport> reports,
+                       const Previews& previews, const PageFacts& facts);
 
 }  // namespace unravel

@@ -98,8 +98,9 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
     return text;
 }
 
-Previews::Previews(int width, int height, int pictures, std::size_t budget)
-    : budget_(budget), share_(budget / static_cast<std::size_t>(std::max(pictures, 1))) {
+Previews::Previews(int width, int height, int pictures, std::size_t budget,
+                   const std::filesystem::path& folder)
+    : budget_(budget), share_(budget / static_cast<std::size_t>(std::max(pictures, 1))), spool_(folder) {
     const double pixels =
         static_cast<double>(budget) / (base64_growth * bytes_per_pixel * std::max(pictures, 1));
     const double shape = static_cast<double>(width) / height;
@@ -116,13 +117,21 @@ void Previews::add(const std::string& view, int frame, const Image& image) {
     }
     const std::lock_guard lock(mutex_);
     bytes_ += text.size();
-    pictures_[view].insert_or_assign(frame, std::move(text));
+    pictures_[view][frame] = {spool_.append(std::as_bytes(std::span(text))), text.size()};
 }
 
-const std::map<int, std::string>& Previews::of(const std::string& view) const {
-    static const std::map<int, std::string> none;
-    const auto found = pictures_.find(view);
-    return found == pictures_.end() ? none : found->second;
+std::vector<int> Previews::frames(const std::string& view) const {
+    std::vector<int> numbers;
+    if (const auto found = pictures_.find(view); found != pictures_.end())
+        for (const auto& [frame, place] : found->second) numbers.push_back(frame);
+    return numbers;
+}
+
+std::string Previews::text(const std::string& view, int frame) const {
+    const Place& place = pictures_.at(view).at(frame);
+    std::string text(place.size, '\0');
+    spool_.read(place.begin, std::as_writable_bytes(std::span(text)));
+    return text;
 }
 
 }  // namespace unravel

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "tool/report/page.hpp"
 #include "tool/view.hpp"
 
@@ -10,7 +12,8 @@ constexpr std::size_t rows_shown = 24;
 
 }  // namespace
 
-PageRecorder::PageRecorder(const ClothModel& model) : model_(model), edges_(drawn_edges(model)) {}
+PageRecorder::PageRecorder(const ClothModel& model, const std::filesystem::path& folder)
+    : model_(model), edges_(drawn_edges(model)), rows_(folder) {}
 
 void PageRecorder::see(const FrameRecord& record) {
     const std::vector<Rgb>& colors = colors_.assign(record.component, edges_);
@@ -21,16 +24,19 @@ void PageRecorder::see(const FrameRecord& record) {
         frame.first_step = record.reports.front().step;
         frame.last_step = record.reports.back().step;
     }
-    frame.components = component_table(model_, record.component, record.springs, record.solves, colors);
-    for (std::size_t k = rows_shown; k < frame.components.size(); ++k) {
-        const ComponentRow& row = frame.components[k];
+    std::vector<ComponentRow> table =
+        component_table(model_, record.component, record.springs, record.solves, colors);
+    for (std::size_t k = rows_shown; k < table.size(); ++k) {
+        const ComponentRow& row = table[k];
         ++frame.rest.count;
         frame.rest.particles += row.particles;
         frame.rest.springs += row.springs;
         frame.rest.iterations += row.solve.iterations;
         frame.rest.rvm += row.solve.rvm;
     }
-    if (frame.components.size() > rows_shown) frame.components.resize(rows_shown);
+    frame.first_row = rows_.size();
+    frame.rows = std::min(table.size(), rows_shown);
+    rows_.append(std::span(table).first(frame.rows));
     frames_.push_back(std::move(frame));
 }
 

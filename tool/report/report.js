@@ -2,6 +2,7 @@
 // The page's state is one number, the index of the frame shown; show() makes everything else follow it.
 
 const data = JSON.parse(document.getElementById('data').textContent);
+data.frames = JSON.parse(document.getElementById('frames').textContent);
 const pictures = JSON.parse(document.getElementById('pictures').textContent);
 const element = (id) => document.getElementById(id);
 const numbers = data.frames.map((frame) => frame.number);

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/base/temporary_folder.hpp"
 #include "tool/report/html.hpp"
 
 using namespace unravel;
@@ -53,12 +54,18 @@ TEST_CASE("shrinking keeps the shape and never enlarges", "[report]") {
 
 TEST_CASE("600 frames of two busy views stay within the page's budget", "[report]") {
     constexpr std::size_t budget = std::size_t{24} << 20;
-    Previews all(1280, 720, 1200, budget);
+    const TemporaryFolder folder;
+    Previews all(1280, 720, 1200, budget, folder.path());
     CHECK(all.width() >= 320);
     const Image image = busy_picture(1280, 720);
     // All of them are alike, so one tells what 1200 take.
     all.add("components", 0, image);
     CHECK(1200 * all.bytes() <= budget);
+    // It is there again, and only there.
+    CHECK(all.frames("components") == std::vector<int>{0});
+    CHECK(all.frames("textured").empty());
+    CHECK(all.text("components", 0).starts_with("UklGR"));
+    CHECK(all.text("components", 0).size() == all.bytes());
 }
 
 TEST_CASE("values of a page may hold braces, and unknown names vanish", "[report]") {
