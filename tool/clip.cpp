@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "tool/studio.hpp"
+#include "tool/view.hpp"
 
 namespace unravel {
 
@@ -55,6 +56,7 @@ void check_clip(const Scene& scene, const RunFolder& folder, const ClipOptions& 
             check_video_settings(folder.video(view.name, options.video_ending),
                                  video_settings(scene, options, view.layout));
     }
+    if (!options.textures.empty()) check_textures(scene, options.textures);
     const GlContext context(options.device);
 }
 

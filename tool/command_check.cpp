@@ -11,6 +11,7 @@
 #include "sim/simulate.hpp"
 #include "tool/options.hpp"
 #include "tool/progress.hpp"
+#include "tool/view.hpp"
 
 namespace unravel {
 
@@ -24,6 +25,7 @@ constexpr double bytes_per_particle = 1900;
 
 int command_check(const Options& options) {
     const Scene scene = load_scene(options.scene, options.overrides);
+    check_textures(scene, options.scene.has_parent_path() ? options.scene.parent_path() : ".");
     Simulation simulation = start_simulation(scene);
     require_explicit_stability(simulation.model, simulation.options, scene.solver.step);
     const std::vector<Effect> effects = list_effects(scene);

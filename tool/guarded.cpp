@@ -17,6 +17,14 @@
 
 namespace unravel {
 
+namespace {
+
+OutputError no_standard_output() {
+    return OutputError("standard output", "nobody reads it, or its disk is full");
+}
+
+}  // namespace
+
 int guarded(const std::function<int()>& command) {
     // Not fmt::print: it throws where standard error is closed, and the exit code is to be right even then.
     const auto say = [](const std::string& text) { std::fputs(text.c_str(), stderr); };
@@ -26,8 +34,7 @@ int guarded(const std::function<int()>& command) {
     };
     try {
         const int code = command();
-        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-            throw OutputError("standard output", "nobody reads it, or its disk is full");
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw no_standard_output();
         return code;
     } catch (const SceneError& error) {
         // Its text is a list of located problems, to be read by editors as it is.
@@ -55,6 +62,8 @@ int guarded(const std::function<int()>& command) {
         say("unravel: memory ran out; `unravel check` tells what a scene needs\n");
         return exit_output;
     } catch (const std::exception& error) {
+        // fmt::print's words for standard output name no file.
+        if (std::ferror(stdout) != 0) return failed(no_standard_output(), exit_output);
         return failed(error, exit_output);
     }
 }

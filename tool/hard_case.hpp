@@ -27,6 +27,7 @@ struct HardCase {
     std::string says;        ///< refuse, stop: part of the message
     double strain = 0.1;     ///< survive: bound on the largest strain of a stretch spring
     double energy = 1e-9;    ///< survive: how far energy may rise above what it was, over the energy there is
+    bool swing = false;      ///< energy may swing as forward-backward Euler's does
     bool fed = false;        ///< the scene puts energy in while it runs: its rise is not judged
     double rest = 0;         ///< m/s, what the fastest particle may do at the end; 0: need not rest
     double penetration = 0;  ///< m, how deep a particle may be inside a solid (not its skin)

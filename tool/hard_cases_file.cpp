@@ -46,6 +46,7 @@ std::vector<HardCase> read_hard_cases(const std::filesystem::path& file) {
         c.says = t["says"].value_or(std::string());
         c.strain = t["strain"].value_or(c.strain);
         c.energy = t["energy"].value_or(c.energy);
+        c.swing = t["swing"].value_or(c.swing);
         c.fed = t["fed"].value_or(c.fed);
         c.rest = t["rest"].value_or(c.rest);
         c.penetration = t["penetration"].value_or(c.penetration);

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <functional>
+#include <iostream>
 
 #include "tool/bench/command_speed.hpp"
 #include "tool/bench/frames.hpp"
@@ -291,7 +292,9 @@ int main(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         const int code = app.exit(error);
-        return code == 0 ? exit_done : exit_usage;
+        if (code != 0) return exit_usage;
+        std::cout.flush();  // help goes there
+        return guarded([] { return exit_done; });
     }
     return guarded(chosen);
 }

@@ -35,11 +35,10 @@ std::string key_of(const fs::path& scene, const std::string& rest) {
 }
 
 std::string key_of(const HardCase& hard, bool pictures) {
-    return key_of(hard.scene,
-                  fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", fmt::join(hard.set, "|"),
-                              static_cast<int>(hard.must), hard.says, hard.strain, hard.energy, hard.fed,
-                              hard.rest, hard.penetration, hard.flicker, hard.chatter, hard.jitter,
-                              hard.allow_unstable, pictures));
+    return key_of(hard.scene, fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", fmt::join(hard.set, "|"),
+                                          static_cast<int>(hard.must), hard.says, hard.strain, hard.energy,
+                                          hard.fed, hard.rest, hard.penetration, hard.flicker, hard.chatter,
+                                          hard.jitter, hard.allow_unstable, pictures));
 }
 
 void write_piece(const fs::path& file, const std::string& key, Json content) {

@@ -24,7 +24,8 @@ void make_turntable(Scene& scene, ClipOptions& options, double seconds, int fram
 }
 
 FrameSource turntable_source(const ClipOptions& options, const FrameRecord& record) {
-    return [last = options.last, record = FrameRecord(record), next = 0]() mutable -> std::optional<FrameRecord> {
+    return [last = options.last, record = FrameRecord(record),
+            next = 0]() mutable -> std::optional<FrameRecord> {
         if (next > last) return std::nullopt;
         record.frame = next++;
         return record;

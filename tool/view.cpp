@@ -196,6 +196,11 @@ Rgb parse_color(const std::string& text) {
     return {byte(1), byte(3), byte(5)};
 }
 
+void check_textures(const Scene& scene, const std::filesystem::path& textures) {
+    for (const ClothLook& look : scene.look.cloth)
+        if (!look.texture.empty()) read_png(textures / look.texture);
+}
+
 DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Placement& placement,
                           const std::filesystem::path& textures) {
     DrawScene out;

@@ -18,6 +18,9 @@ DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Pla
 /// Edges of the component view, as particle pairs: stretch springs, where the splitting is shown shear too.
 std::vector<std::array<std::uint32_t, 2>> drawn_edges(const ClothModel& model, Show show = Show::components);
 
+/// Throws InputError where a texture that the scene names is no picture; `textures`: their folder.
+void check_textures(const Scene& scene, const std::filesystem::path& textures);
+
 /// Time of a frame within its clip [s].
 double frame_time(const Scene& scene, int frame);
 

@@ -1,0 +1,100 @@
+"""Runs that are stopped: by signals, by kills at random moments, by each other, by their own failure."""
+
+import json
+import os
+import random
+import shutil
+import signal
+import time
+
+from run_files import check_same, check_whole, content, leftovers, video_frames
+from tool_runs import (DONE, HERE, INTERRUPTED, PATIENCE, SIMULATION, USAGE, finish, job, run, start, wait_for_frames)
+
+
+def test_signals_finish_the_videos_and_resume_ends_with_the_same_bytes(reference, folder):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        out = folder / signal.Signals(number).name
+        process = start(job(out))
+        wait_for_frames(process, out, 4)
+        process.send_signal(number)
+        finish(process, INTERRUPTED)
+        check_whole(out)
+        assert not leftovers(out), leftovers(out)
+        made = json.loads((out / "run.json").read_text())
+        assert made["status"] == "interrupted"
+        for style in ("textured", "components"):
+            assert video_frames(out / f"{style}.mp4") == len(list(out.glob(f"frames/{style}_*.png")))
+        run(job(out, "--resume"))
+        reference.check(out, f"after {signal.Signals(number).name}")
+        made, whole = (json.loads((f / "run.json").read_text()) for f in (out, reference.folder))
+        assert made["status"] == "complete" and made["state_hashes"] == whole["state_hashes"]
+
+
+def test_an_early_signal_leaves_a_folder_that_resumes(reference, folder):
+    out = folder / "early"
+    process = start(job(out, command="simulate"))
+    deadline = time.monotonic() + PATIENCE
+    while not out.exists() and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.0005)
+    process.send_signal(signal.SIGTERM)
+    finish(process, INTERRUPTED)
+    run(job(out, "--resume", command="simulate"))
+    reference.check(out, "after an early signal", videos=False)
+
+
+def test_kills_at_random_leave_whole_files_and_resume_ends_with_the_same_bytes(reference, folder):
+    kills = int(os.environ.get("UNRAVEL_KILLS", "12"))
+    dice = random.Random(20040829)
+    done = finished = 0
+    while done < kills:
+        out = folder / f"killed_{finished}"
+        command = "run" if finished % 2 == 0 else "simulate"
+        while done < kills:
+            # A random number of frames on, then a random moment: spread over the run however loaded the machine is.
+            there = len(list(out.glob("cache/frame_*.state")))
+            process = start(job(out, *(["--resume"] if out.exists() else []), command=command))
+            wait_for_frames(process, out, there + dice.randint(0, 4))
+            time.sleep(dice.uniform(0, 0.1 * reference.seconds))
+            process.kill()
+            process.communicate(timeout=PATIENCE)
+            ended = process.returncode != -signal.SIGKILL
+            if out.exists():
+                check_whole(out)
+            if ended:
+                assert process.returncode == DONE, process.returncode
+                break
+            done += 1
+        run(job(out, *(["--resume"] if out.exists() else []), command=command))
+        reference.check(out, f"after {done} kills", videos=command == "run")
+        finished += 1
+        shutil.rmtree(out)
+    print(f"    {done} kills over {finished} runs, nothing lost", flush=True)
+
+
+def test_two_runs_do_not_share_a_folder(reference, folder):
+    out = folder / "shared"
+    first = start(job(out, "--set", "clip.duration=40", command="simulate"))
+    wait_for_frames(first, out, 2)
+    text = run(job(out, "--resume", "--set", "clip.duration=40", command="simulate"), USAGE)
+    assert "another" in text, text
+    first.send_signal(signal.SIGINT)
+    finish(first, INTERRUPTED)
+
+
+def test_a_run_that_cannot_go_on_keeps_its_frames_and_says_why(reference, folder):
+    out = folder / "unstable"
+    text = run(job(out, "--size", "64x48", scene=HERE.parents[1] / "scenes/hard/torn.toml"), SIMULATION)
+    made = json.loads((out / "failure/failure.json").read_text())
+    assert made["criterion"] == "strain" and made["value"] > made["limit"], made
+    assert f"step {made['step']}" in text and made["advice"] in text, text
+    assert made["particles"] and made["spring"]["rest"] > 0
+    check_whole(out)
+    records = len(list(out.glob("cache/*.state")))
+    assert records > 1 and (out / "failure/last_good.state").exists()
+    assert (out / "failure/scene.toml").read_bytes() == (out / "scene.toml").read_bytes()
+    assert video_frames(out / "textured.mp4") == records == len(list(out.glob("frames/textured_*.png")))
+    assert (out / "failure/worst.png").exists()
+    assert json.loads((out / "run.json").read_text())["status"] == "failed"
+    first = content(out)
+    run(job(out, "--resume", "--size", "64x48", scene=HERE.parents[1] / "scenes/hard/torn.toml"), SIMULATION)
+    check_same(first, content(out), "a failed run resumed")
