@@ -92,6 +92,16 @@ Vec3f mean_of(const Image& image) {
     return sum / static_cast<float>(std::max(image.width * image.height, 1));
 }
 
+/// Between neighbouring vertices, where cells are square [m].
+float vertex_gap(const ClothMesh& mesh) {
+    float twice_area = 0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Vec2f p = mesh.uv[b] - mesh.uv[a], q = mesh.uv[c] - mesh.uv[a];
+        twice_area += std::abs(p.x() * q.y() - p.y() * q.x());
+    }
+    return std::sqrt(twice_area / static_cast<float>(std::max<std::size_t>(mesh.triangles.size(), 1)));
+}
+
 // Pixels a thread from which on it is seen; see weave.glsl.
 constexpr float least_thread = 1 / 0.6f;
 
@@ -116,6 +126,7 @@ GlProgram fabric_program(const ClothMesh& mesh, bool software, bool threads) {
     program.sampler("picture", 0);
     const Vec3f front = linear(look.front), second = linear(look.front_second), back = linear(look.back);
     const std::array<Vec3f, 2> yarn_front{front, second}, yarn_back{back, mix(back, second, 0.3f)};
+    glUniform1f(program.uniform("vertex_gap"), vertex_gap(mesh));
     glUniform1f(program.uniform("per_period"), 1 / look.period);
     glUniform1f(program.uniform("per_thread"), 1 / thread_of(look));
     glUniform3fv(program.uniform("yarn_front"), 2, yarn_front[0].data());

@@ -44,7 +44,7 @@ void main() {
     vec3 v = normalize(eye.xyz - world);
     vec3 n = seen_normal(normalize(world_normal) * (gl_FrontFacing ? 1.0 : -1.0), v);
     float visible =
-        key_visibility(world, dot(n, key_direction.xyz) >= 0.0 ? n : -n, pattern_turn(), true);
+        key_visibility(world, dot(n, key_direction.xyz) >= 0.0 ? n : -n, 0.0, pattern_turn(), true);
     FabricLight light = fabric_light(n, tilted(n, cloth.tilt), v, mean_albedo[gl_FrontFacing ? 0 : 1],
                                      gl_FrontFacing ? openness.x : openness.y, visible);
 #endif

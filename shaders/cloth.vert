@@ -3,6 +3,7 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;
 out vec2 cloth_uv;  // m
 #if LIGHT_AT_VERTICES
+uniform float vertex_gap;  // m, between neighbouring vertices
 // Light on either side. A vertex on a ridge is seen through triangles of both.
 out vec3 diffuse_front;
 out vec3 sheen_front;
@@ -19,7 +20,8 @@ void main() {
     vec2 open = sky_openness(position, normal);
 #if LIGHT_AT_VERTICES
     vec3 v = normalize(eye.xyz - position);
-    float visible = key_visibility(position, dot(normal, key_direction.xyz) >= 0.0 ? normal : -normal, 0.0, true);
+    float visible =
+        key_visibility(position, dot(normal, key_direction.xyz) >= 0.0 ? normal : -normal, vertex_gap, 0.0, true);
     vec3 front = seen_normal(normal, v), back = seen_normal(-normal, v);
     FabricLight light = fabric_light(front, front, v, mean_albedo[0], open.x, visible);
     diffuse_front = light.diffuse;

@@ -2,6 +2,7 @@
 // background. All but the key light's shadow varies so slowly that a grid of vertices tells it, finer in the middle.
 // GRID: its cells along a side.
 uniform sampler2D open_map;
+uniform sampler2D soft_map;
 uniform float level;   // m
 uniform vec4 region;   // of the maps: x, z of their corner; their size [m]
 uniform float reach;   // m from the centre to the grid's sides
@@ -21,5 +22,6 @@ void main() {
     float away = smoothstep(fade.x, fade.y, length(from_centre));
     shadowed = mix(tone(albedo * dim), background.rgb, away);
     lit = mix(tone(albedo * (dim + key_color.rgb * max(key_direction.y, 0.0))), background.rgb, away);
+    at_map -= 0.5 / vec2(textureSize(soft_map, 0));  // see ground_soft.frag
     gl_Position = view_projection * vec4(place, 1.0);
 }

@@ -11,7 +11,7 @@ void main() {
         ivec4 tile = ivec4(ivec2(k % 4, k / 4) * size, size);
         at.xy = at.xy * vec2(4.0, 2.0) - vec2(k % 4, k / 4);
         float weight = sky_direction[k].y;
-        open += weight * soft_visibility(sky_depth, at, tile, 0.5, 0.0, 0.0, 8, 10);
+        open += weight * soft_visibility(sky_depth, at, tile, 0.5, 0.0, shadow.x / shadow.y, 0.0, 8, 10);
         all += weight;
     }
     color = vec4(open / all);

@@ -5,5 +5,5 @@ out vec4 color;
 void main() {
     vec3 at = (shadow_matrix * vec4(place, 1.0)).xyz;
     color = vec4(soft_visibility(shadow_depth, at, ivec4(ivec2(0), textureSize(shadow_depth, 0)), key_direction.w, 0.0,
-                                 pattern_turn(), 6, 8));
+                                 shadow.x / shadow.y, pattern_turn(), 6, 8));
 }

@@ -12,9 +12,10 @@ float depth_at(sampler2D depths, vec2 at, ivec4 tile) {
 // Percentage-closer soft shadows: the mean distance of blockers sets the width of the penumbra. [Fernando 2005]
 //   source   tangent of the lamp's radius
 //   slope    how steeply the receiver's own surface may rise within the disk, so as not to block itself
+//   least    radius of the disk where the blockers are near: no sharper than the places that look are apart
 //   turn     angle by which the disk of lookups is turned
-float soft_visibility(sampler2D depths, vec3 at, ivec4 tile, float source, float slope, float turn, int searches,
-                      int taps) {
+float soft_visibility(sampler2D depths, vec3 at, ivec4 tile, float source, float slope, float least, float turn,
+                      int searches, int taps) {
     // Nothing casts from beyond the map's sides; beyond its far end there are only receivers.
     bool inside = all(greaterThan(at.xy, vec2(0.0))) && all(lessThan(at.xy, vec2(1.0)));
     // Loops that need no lookup get a length of none: llvmpipe spends on a branch that no pixel of a block takes as
@@ -36,7 +37,7 @@ float soft_visibility(sampler2D depths, vec3 at, ivec4 tile, float source, float
     // None or all in the way: full light or none.
     bool rim = count > 0.0 && count < float(searches);
     if (!rim) taps = 0;
-    float width = max(shadow.x / shadow.y, (at.z - sum / max(count, 1.0)) * source);
+    float width = max(least, (at.z - sum / max(count, 1.0)) * source);
     float lit = 0.0;
     for (int i = 0; i < taps; ++i) {
         float r = sqrt((float(i) + 0.5) / float(taps)) * width;
@@ -48,12 +49,12 @@ float soft_visibility(sampler2D depths, vec3 at, ivec4 tile, float source, float
 }
 
 // Share of the key light that reaches p, whose surface faces the light along n (dot(n, l) > 0). Where it is not
-// `needed` the answer costs less and means nothing.
-float key_visibility(vec3 p, vec3 n, float turn, bool needed) {
+// `needed` the answer costs less and means nothing. `apart`: metres to the next place that is asked about.
+float key_visibility(vec3 p, vec3 n, float apart, float turn, bool needed) {
     float away = 1.0 - dot(n, key_direction.xyz);
     vec3 at = (shadow_matrix * vec4(p + n * shadow.x * (0.8 + 2.0 * away), 1.0)).xyz;
-    return soft_visibility(shadow_depth, at, ivec4(ivec2(0), textureSize(shadow_depth, 0)), key_direction.w, 0.5, turn,
-                           needed ? 6 : 0, 12);
+    return soft_visibility(shadow_depth, at, ivec4(ivec2(0), textureSize(shadow_depth, 0)), key_direction.w, 0.5,
+                           max(shadow.x, 0.75 * apart) / shadow.y, turn, needed ? 6 : 0, 12);
 }
 
 // Light from all around at normal n, as if nothing stood in the way.

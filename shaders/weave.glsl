@@ -18,6 +18,23 @@ float stripe(float x, float w) {
     return mix(clamp(0.5 + inside / max(w, 1e-4), 0.0, 1.0), 0.5, clamp((w - 0.2) * 4.0, 0.0, 1.0));
 }
 
+#if THREADS && WEAVE != 4
+// How much of a window of size w [threads] around s shows the thread along v: over one and under one, or over two and
+// under two, one further in every row. Both are sums of products of waves in s.x and s.y, so each is filtered alone.
+float warp_on_top(vec2 s, vec2 w) {
+#if WEAVE == 1
+    w *= 0.25;
+    s *= 0.25;
+    vec4 wave = 2.0 * vec4(stripe(s.x, w.x), stripe(s.x + 0.25, w.x), stripe(s.y, w.y), stripe(s.y + 0.25, w.y)) - 1.0;
+    return 0.5 + 0.25 * ((wave.x + wave.y) * wave.z + (wave.x - wave.y) * wave.w);
+#else
+    w *= 0.5;
+    s *= 0.5;
+    return 0.5 + 0.5 * (2.0 * stripe(s.x, w.x) - 1.0) * (2.0 * stripe(s.y, w.y) - 1.0);
+#endif
+}
+#endif
+
 Woven woven(vec2 uv, bool front) {
     vec3 a = front ? yarn_front[0] : yarn_back[0], b = front ? yarn_front[1] : yarn_back[1];
     vec2 size = fwidth(uv);
@@ -43,16 +60,14 @@ Woven woven(vec2 uv, bool front) {
 #if THREADS && WEAVE != 4
     float detail = 1.0 - smoothstep(0.22, 0.6, max(pixel.x, pixel.y));
     if (detail > 0.0) {
-        vec2 cell = floor(s), within = fract(s) - 0.5;
-        bool warp_on_top = WEAVE == 1 ? mod(cell.x + cell.y, 4.0) < 2.0 : mod(cell.x + cell.y, 2.0) < 1.0;
-        // Across the thread on top the surface is round; along it, it dives under its neighbours.
-        vec2 across = warp_on_top ? within : within.yx;
-        float shade = 1.0 - 1.1 * across.x * across.x - 0.5 * across.y * across.y;
-        float slub = fract(sin(dot(warp_on_top ? vec2(cell.x, 1.0) : vec2(2.0, cell.y), vec2(12.9898, 78.233))) * 43758.5);
-        vec3 color = mix(b, a, warp_on_top ? warp : weft) * (shade * 1.08 * (0.94 + 0.12 * slub));
+        float top = warp_on_top(s, 1.4 * pixel);
+        vec2 cell = floor(s), within = fract(s) - 0.5, square = within * within;
+        // Across the thread on top the surface is round; along it, it dives under its neighbours. Their mean is 1.
+        vec2 shade = 1.154 - 1.27 * square - 0.58 * square.yx;
+        shade *= 0.94 + 0.12 * fract(sin(vec2(cell.x, 78.233 + cell.y) * 12.9898) * 43758.5);  // no thread is like the next
+        vec3 color = mix(mix(b, a, weft) * shade.y, mix(b, a, warp) * shade.x, top);
         result.albedo = mix(result.albedo, color, detail);
-        vec2 tilt = vec2(1.0 * across.x, 0.5 * across.y);
-        result.tilt = detail * (warp_on_top ? tilt : tilt.yx);
+        result.tilt = detail * within * mix(vec2(0.5, 1.0), vec2(1.0, 0.5), top);
     }
 #endif
     return result;
