@@ -55,13 +55,14 @@ PixelRect covered_rect(const DrawScene& scene, const DrawFrame& frame, const Eig
     Vec2f low = Vec2f::Constant(2),
           high = Vec2f::Constant(-2);  // in clip space, where the picture is [−1, 1]²
     bool behind = false;
-    visit_bounds(scene, frame, [&](const Vec3f& p) {
+    const auto stretch = [&](const Vec3f& p) {
         const Eigen::Vector4f clip = view_projection * p.homogeneous();
         behind = behind || !(clip.w() > least_depth);
         const Vec2f at = clip.head<2>() / std::max(clip.w(), least_depth);
         low = low.cwiseMin(at);
         high = high.cwiseMax(at);
-    });
+    };
+    visit_bounds(scene, frame, std::ref(stretch));
     if (behind) return whole;
     const auto pixel = [&](float at, int size) {
         return static_cast<int>(

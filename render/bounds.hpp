@@ -9,6 +9,7 @@ namespace unravel {
 
 /// Calls `visit` with points whose convex hull holds all cloths and solids of a frame: every particle, and
 /// eight corners around each solid. Planes have no end and are left out.
+/// A `visit` by reference (std::ref) allocates nothing, whatever it captures.
 void visit_bounds(const DrawScene& scene, const DrawFrame& frame,
                   const std::function<void(const Vec3f&)>& visit);
 

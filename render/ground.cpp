@@ -108,12 +108,13 @@ PixelRect Ground::shadow_rect(const DrawFrame& frame) const {
     const float level = scene_->ground_height;
     Eigen::Array2f low = Eigen::Array2f::Constant(1e9f), high = -low;
     float top = 0;
-    visit_bounds(*scene_, frame, [&](const Vec3f& p) {
+    const auto stretch = [&](const Vec3f& p) {
         const Eigen::Array2f at = shadow_of(p, key_, level);
         low = low.min(at);
         high = high.max(at);
         top = std::max(top, p.y() - level);
-    });
+    };
+    visit_bounds(*scene_, frame, std::ref(stretch));
     // Penumbras reach out by half the lamp's width as seen from the ground, stretched where it stands low.
     const float lowness = std::max(key_.y(), lowest_light);
     const float margin = ShadowMaps::lamp * top / (lowness * lowness);

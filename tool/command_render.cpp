@@ -72,6 +72,9 @@ int command_render(const Options& options) {
     Scene scene = load_scene(cached.scene(), options.overrides);
     const std::uint64_t hash = scene_hash(scene);
     const Scene as_run = scene;
+    const nlohmann::ordered_json left = earlier_run(cached);
+    // The folder's scene.toml has lost the name that the scene came by.
+    scene.name = left.value("scene", (cached.root / "").parent_path().filename().string());
     ClipOptions clip_options = clip_options_of(options, scene);
     clip_options.textures = cached.root;
     const bool turns = options.turntable > 0;
@@ -135,9 +138,7 @@ int command_render(const Options& options) {
     std::vector<StepReport> reports = spooled.read_all();
     if (std::filesystem::exists(cached.stats()))
         take_times(read_whole_text(cached.stats(), largest_stats), reports);
-    nlohmann::ordered_json run = earlier_run(cached);
-    // The folder's scene.toml has lost the name that the scene came by.
-    scene.name = run.value("scene", cached.root.filename().string());
+    nlohmann::ordered_json run = left;
     run["renderer"] = {{"name", report.renderer}, {"why", report.renderer_summary}};
     run["encoder"] = report.encoders;
     write_report_page(scene, model, folder, recorder, reports, previews, page_facts(run));

@@ -49,8 +49,16 @@ void check_golden(const char* name, DrawStyle style, int samples) {
     const std::filesystem::path file = std::filesystem::path(UNRAVEL_SOURCE_DIR) / "tests/golden" / name;
     if (std::getenv("UNRAVEL_WRITE_GOLDEN")) write_png(file, image, {.level = 9});
     const Difference difference = compare(image, read_png(file));
-    INFO("greatest difference at " << difference.x << ", " << difference.y << " with " << context->renderer()
-                                   << ", " << context->version());
+    // What was drawn stays to be looked at, whichever of the checks below it fails.
+    const std::filesystem::path drawn =
+        std::filesystem::path(UNRAVEL_SOURCE_DIR) / "build/golden_differs" / name;
+    if (difference.most > 0) {
+        std::filesystem::create_directories(drawn.parent_path());
+        write_png(drawn, image);
+    }
+    INFO("greatest difference " << difference.most << " at " << difference.x << ", " << difference.y
+                                << " with " << context->renderer() << ", " << context->version() << "; see "
+                                << drawn);
     if (context->version().find("Mesa 22.3.6") != std::string::npos &&
         context->renderer().find("llvmpipe (LLVM 15.0.6, 256 bits)") != std::string::npos) {
         CHECK(difference.most == 0);
