@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "sim/choose_integrator.hpp"
@@ -17,9 +19,39 @@ namespace unravel {
 
 namespace {
 
-// Rough cost of a step on one core, from `unravel bench` on a 2.4 GHz server core [s per particle].
-constexpr double seconds_per_particle_step = 1.0e-6;
+// Rough cost on one 2.4 GHz server core, fitted to the scenes that ship: within a factor of two of each.
+// Seconds per particle and step:
+constexpr double grid_step = 0.6e-6, mesh_step = 2.6e-6;  // springs and solve
+constexpr double contact_step = 0.5e-6;                   // with solids of a closed form
+constexpr double mesh_contact_step = 3.5e-6;              // with meshes
+constexpr double self_collision_step = 0.8e-6;
+// Seconds per frame of 1280 × 720, both views with PNG and video:
+constexpr double frame_pictures = 0.11;
 constexpr double bytes_per_particle = 1900;
+
+double step_seconds(const Scene& scene, const ClothModel& model) {
+    double seconds = 0;
+    double contact = scene.self_collision ? self_collision_step : 0;
+    if (!scene.solids.empty()) {
+        const bool mesh = std::any_of(scene.solids.begin(), scene.solids.end(),
+                                      [](const Solid& solid) { return solid.shape == Shape::mesh; });
+        contact += mesh ? mesh_contact_step : contact_step;
+    }
+    for (const ClothPatch& cloth : model.cloths)
+        seconds += cloth.count() * (contact + (cloth.grid() ? grid_step : mesh_step));
+    return seconds;
+}
+
+double picture_seconds(const Scene& scene) {
+    const double area = static_cast<double>(scene.clip.size[0]) * scene.clip.size[1];
+    return scene.clip.frames() * frame_pictures * area / (1280.0 * 720.0);
+}
+
+// Two digits, and never more than it.
+double round_down(double step) {
+    const double unit = std::pow(10.0, std::floor(std::log10(step)) - 1);
+    return std::floor(step / unit) * unit;
+}
 
 }  // namespace
 
@@ -31,7 +63,8 @@ int command_check(const Options& options) {
     const std::vector<Effect> effects = list_effects(scene);
     const double n = static_cast<double>(simulation.model.size());
     const long steps = static_cast<long>(simulation.steps_per_frame) * (scene.clip.frames() - 1);
-    const double seconds = n * static_cast<double>(steps) * seconds_per_particle_step;
+    const double seconds = static_cast<double>(steps) * step_seconds(scene, simulation.model);
+    const double pictures = picture_seconds(scene);
     BendLimit limit;
     limit_bend(simulation.model.bends, simulation.model.mass, scene.solver.step, limit);
 
@@ -42,6 +75,7 @@ int command_check(const Options& options) {
                                     {"steps", steps},
                                     {"estimated_bytes", n * bytes_per_particle},
                                     {"estimated_seconds", seconds},
+                                    {"estimated_picture_seconds", pictures},
                                     {"bend_springs_limited", limit.limited}};
         for (const Effect& e : effects) json["effects"][e.name] = {{"on", e.on}, {"because", e.because}};
         fmt::print("{}\n", json.dump(2));
@@ -54,8 +88,8 @@ int command_check(const Options& options) {
                simulation.model.bends.size());
     fmt::print("  {} frames at {} per second, {} steps of {} s\n", scene.clip.frames(), scene.clip.fps, steps,
                scene.solver.step);
-    fmt::print("  about {:.0f} MB of memory and {} of simulation on one core\n", n * bytes_per_particle / 1e6,
-               duration_text(seconds));
+    fmt::print("  about {:.0f} MB of memory, on one core {} of simulation and {} of pictures\n",
+               n * bytes_per_particle / 1e6, duration_text(seconds), duration_text(pictures));
     if (scene.solver.integrator == Integrator::automatic) {
         const IntegratorCosts costs =
             count_costs(simulation.model, simulation.options, scene.solver.step, simulation.ws);
@@ -79,7 +113,7 @@ int command_check(const Options& options) {
                     const double m = std::min(simulation.model.mass[b.i[s]], simulation.model.mass[b.j[s]]);
                     smallest = std::min(smallest, std::sqrt(bend_slope_limit * m / b.slope[s]));
                 }
-                return smallest;
+                return round_down(smallest);
             }());
     }
     return exit_done;

@@ -117,6 +117,24 @@ void check_solids(const Checking& check) {
     }
 }
 
+namespace {
+
+// The script that makes a folder's files, make_*.py, as it can be called from here; empty: there is none.
+std::string script_beside(const std::filesystem::path& folder) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    std::string found;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        const std::string name = entry.path().filename();
+        if (!name.starts_with("make_") || !name.ends_with(".py")) continue;
+        const std::string path = entry.path().lexically_proximate(fs::current_path(error));
+        if (found.empty() || path < found) found = path;
+    }
+    return found;
+}
+
+}  // namespace
+
 ContainedFile contained_file(const std::filesystem::path& folder, const std::string& name,
                              std::string_view kind) {
     namespace fs = std::filesystem;
@@ -130,8 +148,13 @@ ContainedFile contained_file(const std::filesystem::path& folder, const std::str
         return {{},
                 fmt::format("the {} \"{}\" is outside the scene's folder", kind, name),
                 "put it beside the scene and name it relative to it"};
-    if (!fs::is_regular_file(file, error))
-        return {{}, fmt::format("no file \"{}\"", name), "it is looked for in the scene's folder"};
+    if (!fs::is_regular_file(file, error)) {
+        const std::string maker = script_beside(home);
+        return {{},
+                fmt::format("no file \"{}\"", name),
+                maker.empty() ? "it is looked for in the scene's folder"
+                              : fmt::format("make it first: python3 {}", maker)};
+    }
     return {std::move(file), {}, {}};
 }
 

@@ -43,19 +43,19 @@ const std::array<MaterialPreset, 6> presets{{
     // Wang et al., "royal target": trousers, 65% cotton, 35% polyester.
     // c11 2016.6, c22 2035.0, c33 104.8, k 125.4e-6
     {"cotton", 0.22, fabric("cotton", 4033, 4070, 52.4, 3.1e-5)},
-    // Crêpe de Chine of 19 momme (4.34 g/m² each): the one preset that is an estimate, of round values
-    // for thin dress silks on Kawabata's tester (B 0.02, G 0.3, EMT 5%, LT 0.6). Silk is exceptionally low in
-    // shear
-    // (M. Matsudaira, Mechanical Properties and Handles of Silk Filament Weaves, Kanazawa University).
+    // Crêpe de Chine of 19 momme (4.34 g/m² each): the one preset that is an estimate throughout, of round
+    // values for thin dress silks on Kawabata's tester (B 0.02, G 0.3, EMT 5%, LT 0.6). Silk is exceptionally
+    // low in shear (M. Matsudaira, Mechanical Properties and Handles of Silk Filament Weaves, Kanazawa
+    // University).
     {"silk", 0.082, fabric("silk", 1960, 1960, 17, 2e-6)},
     // Wang et al., "11oz black denim": 99% cotton, 1% spandex.
     // c11 205.4, c22 1013.9, c33 53.4, k 64.2e-6 and 97.0e-6
     {"denim", 0.324, fabric("denim", 411, 2028, 26.7, 2.0e-5)},
-    // Kawabata's means of 214 winter suitings, which normalise his hand equation KN-101, as they are quoted
-    // (not
-    // checked against his book):
-    // LT 0.608, log WT 0.962 (so EMT 6.0%), log B −0.867, log G −0.014, log W 1.421 (mg/cm²)
-    {"wool", 0.264, fabric("wool", 1760, 1760, 54, 1.3e-5)},
+    // A tropical, 100% wool, plain weave: W 16.29 mg/cm² and B 0.067 gf·cm²/cm on Kawabata's tester
+    // (Matsudaira, Masuda, Wada & Yokura, "Shape Factor of Flared Skirts Compared with That of Circular
+    // Fabrics", Journal of Textile Engineering 61(6), 2015, Table 1, fabric B). Stretch and shear are
+    // estimates, of round values for suitings (EMT 6%, LT 0.608; G 0.96).
+    {"wool", 0.163, fabric("wool", 1760, 1760, 54, 6.6e-6)},
     // Wang et al., "gray interlock": a T-shirt's knit, 60% cotton, 40% polyester.
     // c11 16.6, c22 34.5, c33 36.9, k 23.2e-6 and 14.3e-6
     {"jersey", 0.187, fabric("jersey", 33.2, 69.0, 18.4, 4.7e-6)},
