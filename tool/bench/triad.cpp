@@ -7,6 +7,7 @@
 #include <chrono>
 #include <vector>
 
+#include "sim/kernels/versions.hpp"
 #include "tool/spread.hpp"
 
 namespace unravel {
@@ -18,9 +19,8 @@ constexpr std::size_t band = std::size_t{1} << 14;
 constexpr int passes = 7;
 
 // Compiled for the machine's widest vectors, as the kernels are that are compared with it.
-__attribute__((target_clones("avx2", "default"))) void pass_over(double* __restrict a,
-                                                                 const double* __restrict b,
-                                                                 const double* __restrict c, std::size_t n) {
+UNRAVEL_VERSIONS void pass_over(double* __restrict a, const double* __restrict b, const double* __restrict c,
+                                std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) a[i] = b[i] + 3.0 * c[i];
 }
 
