@@ -51,6 +51,10 @@ void iterate(const ClothModel& model, const StepOptions& options, double h, Stag
 /// What a step of h seconds from `state` makes, but for what it computes: x, v, dv and contacts.
 void begin_next(const ClothState& state, double h, ClothState& next);
 
+/// Throws SimulationError where a velocity or a change of it, `v` (particles), that a step of h seconds from
+/// `state` made is not finite.
+void require_finite(std::span<const Vec3> v, const ClothState& state, double h);
+
 /// step() by any scheme that treats all particles together.
 StepReport coupled_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                         StepWorkspace& ws);

@@ -64,25 +64,6 @@ void remember(double h, const ClothState& state, const StepWorkspace& ws, ClothS
     }
 }
 
-void require_finite(const StepWorkspace& ws, const ClothState& state, double h) {
-    for (std::uint32_t p = 0; p < ws.dv.size(); ++p) {
-        if (ws.dv[p].allFinite()) continue;
-        StepFailure failure;
-        failure.step = state.step + 1;
-        failure.t = state.t;
-        failure.h = h;
-        failure.particles = {p};
-        failure.value = ws.dv[p].norm();
-        failure.limit = std::numeric_limits<double>::max();
-        failure.advice = fmt::format("take a smaller step than {} s, or an implicit integrator", h);
-        throw SimulationError(
-            fmt::format("step {} (from {:.6g} s, {:.6g} s long): particle {} would get a velocity that is "
-                        "not finite; {}",
-                        failure.step, failure.t, h, p, failure.advice),
-            failure);
-    }
-}
-
 }  // namespace
 
 StepOptions step_options(const Solver& solver) {
@@ -96,6 +77,25 @@ StepOptions step_options(const Solver& solver) {
     options.solve = {solver.preconditioner, solver.tolerance, solver.max_iterations};
     options.decompose = solver.decompose;
     return options;
+}
+
+void require_finite(std::span<const Vec3> v, const ClothState& state, double h) {
+    for (std::uint32_t p = 0; p < v.size(); ++p) {
+        if (v[p].allFinite()) continue;
+        StepFailure failure;
+        failure.step = state.step + 1;
+        failure.t = state.t;
+        failure.h = h;
+        failure.particles = {p};
+        failure.value = v[p].norm();
+        failure.limit = std::numeric_limits<double>::max();
+        failure.advice = fmt::format("take a smaller step than {} s, or an implicit integrator", h);
+        throw SimulationError(
+            fmt::format("step {} (from {:.6g} s, {:.6g} s long): particle {} would get a velocity that is "
+                        "not finite; {}",
+                        failure.step, failure.t, h, p, failure.advice),
+            failure);
+    }
 }
 
 void begin_next(const ClothState& state, double h, ClothState& next) {
@@ -168,7 +168,7 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
         solve_again_where_taut(model, options, h, timer, ws, report);
     }
 
-    require_finite(ws, state, h);
+    require_finite(ws.dv, state, h);
     ClothState& next = ws.before;
     begin_next(state, h, next);
     if (!model.solids.empty()) {

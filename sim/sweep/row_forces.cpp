@@ -22,7 +22,7 @@ struct RowCloth : GridRows {
     const GridSprings* grid = nullptr;
     GridTables tables;
     std::array<RowTable, 4> is_explicit;  // as extension_families
-    bool bends = false, bent = false;     // it has bend springs; they have been evaluated
+    bool bends = false;                   // it has bend springs
     std::vector<double> pushed;           // row by row: x, y, z of bending and air; empty: neither
 
     std::size_t bands() const { return (rows() + band_rows - 1) / band_rows; }
@@ -186,8 +186,7 @@ void RowForces::mark(const ClothModel& model, std::span<const Vec3> end, std::ve
 
 void RowForces::bend(bool acts) {
     for (RowCloth& cloth : memory_->cloths) {
-        cloth.bent = acts && cloth.bends;
-        if (!cloth.bent) {
+        if (!acts || !cloth.bends) {
             std::fill(cloth.pushed.begin(), cloth.pushed.end(), 0.0);
             continue;
         }
@@ -224,8 +223,7 @@ void RowForces::blow(const ClothModel& model, double t) {
         const auto done = [&](std::size_t row, const Row& f) {
             const Row to = cloth.pushed_row(row);
             for (std::size_t c = 0; c < 3; ++c) {
-                for (std::size_t i = 0; i < cloth.columns(); ++i)
-                    to[c][i] = (cloth.bent ? to[c][i] : 0) + f[c][i];
+                for (std::size_t i = 0; i < cloth.columns(); ++i) to[c][i] += f[c][i];
             }
         };
         memory_->over_bands(cloth, 1, base, done);

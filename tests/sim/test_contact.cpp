@@ -119,16 +119,26 @@ TEST_CASE("what two solids pinch rides in the middle of their gap, and is free w
     CHECK(freed.lowest < 0.75);
 }
 
+namespace {
+
+Scene on_turning_sphere(double mu, const Motion& motion) {
+    Scene scene;
+    Cloth cloth = sheet(13, 0.305);
+    cloth.size = {0.24, 0.24};
+    scene.cloths.push_back(cloth);
+    Solid sphere;
+    sphere.friction = {mu, 0.8 * mu};
+    sphere.motion = motion;
+    scene.solids.push_back(sphere);
+    return scene;
+}
+
+}  // namespace
+
 TEST_CASE("a spinning sphere takes its cloth along by friction") {
     const auto turned = [](double mu) {
-        Scene scene;
-        Cloth cloth = sheet(13, 0.305);
-        cloth.size = {0.24, 0.24};
-        scene.cloths.push_back(cloth);
-        Solid sphere;
-        sphere.friction = {mu, 0.8 * mu};
-        sphere.motion = {{0.3, {0, 0, 0}, {0, 0, 0}}, {1.3, {0, 0, 0}, {0, 90, 0}}};
-        scene.solids.push_back(sphere);
+        const Scene scene =
+            on_turning_sphere(mu, {{0.3, {0, 0, 0}, {0, 0, 0}}, {1.3, {0, 0, 0}, {0, 90, 0}}});
         Simulation simulation = start_simulation(scene);
         advance(simulation, 0.3, 1.0 / 400);
         const std::uint32_t edge = simulation.model.cloths[0].at(12, 6);
@@ -146,14 +156,7 @@ TEST_CASE("a spinning sphere gives its cloth angular momentum by friction alone"
     // About the axis, over what the cloth would have if it turned with the sphere. Normal forces point to the
     // axis and have no moment about it.
     const auto share = [](double mu) {
-        Scene scene;
-        Cloth cloth = sheet(13, 0.305);
-        cloth.size = {0.24, 0.24};
-        scene.cloths.push_back(cloth);
-        Solid sphere;
-        sphere.friction = {mu, 0.8 * mu};
-        sphere.motion = {{0.0, {0, 0, 0}, {0, 0, 0}}, {1.0, {0, 0, 0}, {0, 180, 0}}};
-        scene.solids.push_back(sphere);
+        Scene scene = on_turning_sphere(mu, {{0.0, {0, 0, 0}, {0, 0, 0}}, {1.0, {0, 0, 0}, {0, 180, 0}}});
         scene.solver.tolerance = 1e-6;
         Simulation simulation = start_simulation(scene);
         advance(simulation, 0.5, 1.0 / 400);
