@@ -24,7 +24,7 @@ void measure(const ClothModel& model, const BendLimit& bend, std::span<const Vec
     ws.strain.resize(springs.stretch_count);
     report.potential = sum(springs.size(), [&](std::size_t s) {
         const double length = (x[springs.j[s]] - x[springs.i[s]]).norm();
-        if (s < springs.stretch_count) ws.strain[s] = length / springs.rest[s] - 1.0;
+        if (s < springs.stretch_count) ws.strain[s] = static_cast<float>(length / springs.rest[s] - 1.0);
         return extension_energy(length, springs.rest[s], springs.stiffness[s]);
     });
     report.potential += sum(model.bends.size(), [&](std::size_t s) {

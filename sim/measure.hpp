@@ -11,7 +11,7 @@ namespace unravel {
 
 /// Memory of the measurements, kept between steps.
 struct MeasureWorkspace {
-    std::vector<double> strain;  ///< (stretch springs)
+    std::vector<float> strain;  ///< (stretch springs)
     std::vector<double> partials;
 };
 

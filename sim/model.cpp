@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 #include "sim/mesh/mesh_cloth.hpp"
 #include "sim/mesh/mesh_links.hpp"
@@ -163,15 +164,6 @@ void add_pins(const Grid& g, const Placement& placement, std::vector<PinnedGroup
     }
 }
 
-void add_air_cells(const Grid& g, AirCells& air) {
-    for (int j = 0; j < g.patch.cells_v(); ++j) {
-        for (int i = 0; i < g.patch.cells_u(); ++i) {
-            air.corners.push_back(
-                {g.patch.at(i, j), g.patch.at(i, j + 1), g.patch.at(i + 1, j + 1), g.patch.at(i + 1, j)});
-        }
-    }
-}
-
 // What the scene leaves open: near enough that no particle slips between two others, as stiff as the stiffest
 // cloth, and damped to a fifth of critical.
 SelfCollision fitting(SelfCollision settings, std::span<const Grid> grids, const ClothModel& model) {
@@ -183,8 +175,7 @@ SelfCollision fitting(SelfCollision settings, std::span<const Grid> grids, const
     const ExtensionSprings& springs = model.springs;
     if (settings.stiffness == 0 && springs.stretch_count > 0) {
         settings.stiffness =
-            *std::max_element(springs.stiffness.begin(),
-                              springs.stiffness.begin() + static_cast<std::ptrdiff_t>(springs.stretch_count));
+            std::ranges::max(springs.stiffness.values() | std::views::take(springs.stretch_count));
     }
     if (settings.damping == 0) {
         const double lightest = *std::min_element(model.mass.begin(), model.mass.end());
@@ -194,6 +185,20 @@ SelfCollision fitting(SelfCollision settings, std::span<const Grid> grids, const
 }
 
 }  // namespace
+
+AirCells air_cells(const ClothModel& model) {
+    AirCells air;
+    for (const ClothPatch& patch : model.cloths) {
+        if (!patch.grid()) add_mesh_air(*patch.mesh, patch.first, air);
+        for (int j = 0; patch.grid() && j < patch.cells_v(); ++j) {
+            for (int i = 0; i < patch.cells_u(); ++i)
+                air.corners.push_back(
+                    {patch.at(i, j), patch.at(i, j + 1), patch.at(i + 1, j + 1), patch.at(i + 1, j)});
+        }
+    }
+    connect_cells(model.size(), air);
+    return air;
+}
 
 ClothModel build_model(const Scene& scene, Placement& placement) {
     ClothModel model;
@@ -244,17 +249,14 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
     for (const Grid& g : grids) {
         if (!g.patch.grid()) add_stitches(g.cloth, g.patch, placement, model);
     }
-    if (scene.wind) {
-        model.wind = scene.wind;
-        for (const Grid& g : grids)
-            g.patch.grid() ? add_air_cells(g, model.air) : add_mesh_air(g.cloth, g.patch.first, model.air);
-        connect_cells(model.size(), model.air);
-    }
+    model.wind = scene.wind;
     if (scene.self_collision) {
         model.self_collision = fitting(*scene.self_collision, grids, model);
         find_mesh_neighbours(model);
     }
-    model.spring_adjacency = adjacency_of(model.size(), model.springs.i, model.springs.j);
+    model.spring_adjacency = !model.grids.empty() && model.grids.size() == model.cloths.size()
+                                 ? adjacency_of(model.grids)
+                                 : adjacency_of(model.size(), model.springs.i, model.springs.j);
     return model;
 }
 

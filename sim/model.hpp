@@ -79,13 +79,15 @@ struct ClothModel {
     Vec3 gravity{0, 0, 0};                        ///< m/s²
     std::vector<Solid> solids;                    ///< what the cloth meets; empty: no contact at all
     std::optional<Wind> wind;                     ///< absent: no air at all
-    AirCells air;                                 ///< empty without wind
     std::optional<SelfCollision> self_collision;  ///< absent: none; what the scene leaves open is filled in
     Neighbours neighbours;                        ///< of particles of meshes; empty without self-collision
     std::size_t size() const { return mass.size(); }
     /// Whether there are springs besides the cloth's own: stitches, or those of self-collision.
     bool has_temporary_springs() const { return self_collision.has_value() || stitches.size() > 0; }
 };
+
+/// The cells of all cloths, for the air.
+AirCells air_cells(const ClothModel& model);
 
 /// Positions and velocities at t = 0. (particles) [m], [m/s]
 struct Placement {

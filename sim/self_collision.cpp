@@ -131,13 +131,14 @@ void pull_stitches(const Stitches& stitches, std::span<const double> mass, std::
     ExtensionSprings& springs = ws.springs;
     springs.i.assign(stitches.i.begin(), stitches.i.end());
     springs.j.assign(stitches.j.begin(), stitches.j.end());
-    springs.stiffness.assign(stitches.stiffness.begin(), stitches.stiffness.end());
-    springs.damping.assign(stitches.damping.begin(), stitches.damping.end());
-    springs.rest.resize(stitches.size());
+    springs.stiffness.own().assign(stitches.stiffness.begin(), stitches.stiffness.end());
+    springs.damping.own().assign(stitches.damping.begin(), stitches.damping.end());
+    std::vector<double>& rests = springs.rest.own();
+    rests.resize(stitches.size());
     ws.forces.resize(stitches.size());
     for (std::size_t s = 0; s < stitches.size(); ++s) {
         const double left = stitches.closed[s] > 0 ? std::max(1.0 - t / stitches.closed[s], 0.0) : 0.0;
-        const double rest = springs.rest[s] = left * stitches.start[s];
+        const double rest = rests[s] = left * stitches.start[s];
         const std::uint32_t i = springs.i[s], j = springs.j[s];
         const Vec3 d = x[j] - x[i];
         const double length = d.norm(), k = stitches.stiffness[s], damping = stitches.damping[s];
@@ -182,9 +183,9 @@ void self_collide(const ClothModel& model, std::span<const Vec3> x, std::span<co
         springs.i.push_back(ws.candidate_i[k]);
         springs.j.push_back(ws.candidate_j[k]);
     }
-    const auto fill = [&](std::vector<double>& values, double value) {
-        values.resize(first);
-        values.resize(springs.size(), value);
+    const auto fill = [&](Coefficients& values, double value) {
+        values.own().resize(first);
+        values.own().resize(springs.size(), value);
     };
     fill(springs.rest, settings.thickness);
     fill(springs.stiffness, settings.stiffness);

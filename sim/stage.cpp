@@ -13,18 +13,18 @@ constexpr int newton_limit = 30;
 constexpr int newton_halvings = 4;
 
 // Right-hand side of the stage: friction, M (ṽ − v*) and h_f f*, gathered per particle in a fixed order.
+// Forces that were gathered along rows are in `impulse` already.
 void add_forces(const ClothModel& model, StepWorkspace& ws) {
     const Stage& stage = ws.stage;
     const bool rubbed = !ws.friction.empty();
     ws.impulse.resize(model.size());
     parallel_each(model.size(), [&](std::size_t p) {
         Vec3 f = model.mass[p] * model.gravity;
-        if (ws.rowwise) f += ws.gathered[p];
+        if (ws.rowwise) f += ws.impulse[p];
         const auto gather = [&](const Adjacency& adjacency, const std::vector<Vec3>& force) {
-            for (std::uint32_t k = adjacency.start[p]; k < adjacency.start[p + 1]; ++k) {
-                const auto [s, other] = adjacency.entries[k];
+            adjacency.each(static_cast<std::uint32_t>(p), [&](std::uint32_t s, std::uint32_t other) {
                 f += other > p ? force[s] : Vec3(-force[s]);
-            }
+            });
         };
         if (!ws.rowwise) gather(model.spring_adjacency, ws.extension.force);
         if (ws.bend_is_implicit) {
@@ -36,7 +36,7 @@ void add_forces(const ClothModel& model, StepWorkspace& ws) {
         const Vec3 friction = rubbed ? ws.friction[p] : Vec3(Vec3::Zero());
         ws.impulse[p] = friction + stage.h_force * f + model.mass[p] * (stage.v[p] - stage.v_at[p]);
     });
-    if (model.wind && !ws.rowwise) add_air(model.air, ws.air, stage.h_force, ws.impulse);
+    if (model.wind && !ws.rowwise) add_air(ws.air_cells, ws.air, stage.h_force, ws.impulse);
 }
 
 void count_solves(const std::vector<ComponentSolve>& solves, StepReport& report) {
@@ -83,11 +83,13 @@ void solve_uncoupled(const ClothModel& model, StepWorkspace& ws) {
     });
 }
 
-// Where the particles will be if the step goes on like the last one, or as solved: x̃ + h̃ (v* + Δv).
-void predict(std::span<const Vec3> dv, StepWorkspace& ws) {
-    ws.end.resize(dv.size());
+// Where the particles will be if the step goes on like the last one, or as solved: x̃ + h̃ (v* + Δv). Lies
+// where linearise() will put the drift.
+std::span<const Vec3> predict(std::span<const Vec3> dv, StepWorkspace& ws) {
+    ws.drift.resize(dv.size());
     parallel_each(dv.size(),
-                  [&](std::size_t p) { ws.end[p] = ws.base[p] + ws.stage.h * (ws.stage.v_at[p] + dv[p]); });
+                  [&](std::size_t p) { ws.drift[p] = ws.base[p] + ws.stage.h * (ws.stage.v_at[p] + dv[p]); });
+    return ws.drift;
 }
 
 // Where implicit springs are linearised if not at x*: where the scheme says; or, looking ahead, where the
@@ -153,7 +155,6 @@ void explicit_forces(const ClothModel& model, const StepOptions& options, double
                  ws.rows.prepare(model, ws.bend_limit,
                                  {h, scheme.splitting(options.threshold), options.activation_band});
     if (ws.rowwise) {
-        ws.gathered.resize(model.size());
         ws.rows.place(stage.x_at, stage.v_at);
         ws.rows.bend(!ws.bend_is_implicit);
     }
@@ -169,8 +170,9 @@ void explicit_forces(const ClothModel& model, const StepOptions& options, double
     if (ws.rowwise) {
         ws.rows.blow(model, t);
     } else {
-        ws.air.resize(model.air.corners.size());
-        air_forces(model.air, *model.wind, t, h, model.mass, stage.x_at, stage.v_at, ws.air);
+        if (ws.air_cells.start.size() != model.size() + 1) ws.air_cells = air_cells(model);
+        ws.air.resize(ws.air_cells.corners.size());
+        air_forces(ws.air_cells, *model.wind, t, h, model.mass, stage.x_at, stage.v_at, ws.air);
     }
     timer.lap(report.times.air);
 }
@@ -185,7 +187,8 @@ void linearise(const ClothModel& model, const StepOptions& options, double h, St
     }
     place_linearisation(model, options, ws);
     if (ws.rowwise) {
-        ws.rows.gather(model, ws.taut, ws.gathered, ws.extension.state);
+        ws.impulse.resize(model.size());
+        ws.rows.gather(model, ws.taut, ws.impulse, ws.extension.state);
     } else {
         extension_forces(model.springs, model.mass, stage.x_at, stage.v_at, h, splitting,
                          options.activation_band, ws.extension, ws.taut, ws.ahead);
@@ -239,18 +242,17 @@ void solve_stage(const ClothModel& model, const StepOptions& options, std::span<
 }
 
 void predict_taut(const ClothModel& model, std::span<const Vec3> dv, StepWorkspace& ws) {
-    predict(dv, ws);
+    const std::span<const Vec3> end = predict(dv, ws);
     if (ws.rowwise) {
-        ws.rows.mark(model, ws.end, ws.taut);
+        ws.rows.mark(model, end, ws.taut);
     } else {
-        mark_taut(model.springs, ws.end, {}, ws.taut);
+        mark_taut(model.springs, end, {}, ws.taut);
     }
 }
 
 void solve_again_where_taut(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
                             StepWorkspace& ws, StepReport& report) {
-    predict(ws.dv, ws);
-    if (!mark_taut(model.springs, ws.end, ws.extension, ws.taut)) return;
+    if (!mark_taut(model.springs, predict(ws.dv, ws), ws.extension, ws.taut)) return;
     linearise(model, options, h, timer, ws, report);
     ws.guess = ws.dv;
     solve_stage(model, options, ws.guess, timer, ws, report);

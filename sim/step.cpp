@@ -21,10 +21,12 @@ void constrain(const ClothModel& model, const StepView& view, const ClothState& 
     constrain_pins(model, view, ws.base, state.t + h, ws.constraints);
     ws.touches.clear();
     if (model.solids.empty()) return;
+    ws.corrected.assign(ws.base.begin(), ws.base.end());
+    ws.base = ws.corrected;
     ws.friction.assign(model.size(), Vec3::Zero());
     pose_solids(model.solids, state.t, h, ws.poses);
     find_touches(model.solids, ws.poses, view, state.contacts, ws.constraints, ws.touches_found, ws.touches);
-    constrain_touches(model.solids, view, ws.touches, ws.constraints, ws.base, ws.friction);
+    constrain_touches(model.solids, view, ws.touches, ws.constraints, ws.corrected, ws.friction);
 }
 
 void count_springs(std::span<const SpringFamily> families, StepReport& report) {
@@ -142,7 +144,7 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     const Scheme& scheme = scheme_of(options.integrator);
     Stage& stage = ws.stage;
     scheme.begin(state, h, stage);
-    ws.base.assign(stage.x.begin(), stage.x.end());
+    ws.base = stage.x;
     timer.lap(report.times.advance);
 
     // Constraints (Sec. 4; Baraff & Witkin 1998): S and z

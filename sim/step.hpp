@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,24 +48,26 @@ struct StepWorkspace {
     SolidPoses poses;
     std::vector<std::vector<Touch>> touches_found;  ///< (chunks of particles)
     std::vector<Touch> touches;
-    RowForces rows;              ///< where every cloth is a grid
-    bool rowwise = false;        ///< forces are gathered by it; of `extension` there is only the state
-    std::vector<Vec3> gathered;  ///< (particles) N, what it gathered
+    RowForces rows;        ///< where every cloth is a grid
+    bool rowwise = false;  ///< forces are gathered by it; of `extension` there is only the state
     ExtensionForces extension;
     BendLimit bend_limit;
     std::vector<Vec3> bend;      ///< (bend springs) N; empty where they are implicit
     ImplicitBend implicit_bend;  ///< empty where they are explicit
     Adjacency bend_adjacency;    ///< empty where forces are gathered along rows
     bool bend_is_implicit = false;
-    std::vector<Vec3> air;               ///< (cells) N; empty without wind
+    AirCells air_cells;                  ///< empty without wind, and where forces are gathered along rows
+    std::vector<Vec3> air;               ///< (cells) N; empty as they are
     double t_end = 0;                    ///< s, the end of the step: what stitches are to have reached
     SelfCollisionWorkspace self;         ///< empty without self-collision and stitches
     std::vector<std::uint8_t> taut;      ///< (springs) 1: slack at x*, taut at the end; or empty
     std::vector<Vec3> ahead;             ///< (particles) where implicit springs are linearised; empty: at x*
     std::vector<Vec3> drift_from_start;  ///< (particles) drift for those that are linearised at x* even so
-    std::vector<Vec3> base, friction, impulse, drift, end, guess;  ///< (particles)
-    std::vector<Vec3> reaction;                                    ///< (constraints)
-    bool coupled = false;  ///< some spring is implicit, so that there is a system
+    std::span<const Vec3> base;  ///< (particles) x̃ with the contacts' depth corrections; during a step
+    std::vector<Vec3> corrected, friction;    ///< (particles) empty without solids
+    std::vector<Vec3> impulse, drift, guess;  ///< (particles)
+    std::vector<Vec3> reaction;               ///< (constraints)
+    bool coupled = false;                     ///< some spring is implicit, so that there is a system
     std::vector<std::uint32_t> parent;
     Components components, whole;
     System system, whole_system;

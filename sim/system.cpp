@@ -50,10 +50,9 @@ void assemble(std::span<const SpringFamily> families, const Load& load, const Co
         out.start[row + 1] = 0;
         if (left_out(row, p)) return;
         for (const SpringFamily& family : families) {
-            for (std::uint32_t k = family.adjacency->start[p]; k < family.adjacency->start[p + 1]; ++k) {
-                const auto [s, other] = family.adjacency->entries[k];
+            family.adjacency->each(p, [&](std::uint32_t s, std::uint32_t other) {
                 count += family.forces->state[s] == SpringState::implicit && !moved_to_b(row, other);
-            }
+            });
         }
         out.start[row + 1] = count;
     });
@@ -69,9 +68,8 @@ void assemble(std::span<const SpringFamily> families, const Load& load, const Co
         std::uint32_t e = out.start[row];
         for (const SpringFamily& family : families) {
             const std::span<const Vec3> drift = family.drift.empty() ? load.drift : family.drift;
-            for (std::uint32_t k = family.adjacency->start[p]; k < family.adjacency->start[p + 1]; ++k) {
-                const auto [s, other] = family.adjacency->entries[k];
-                if (family.forces->state[s] != SpringState::implicit) continue;
+            family.adjacency->each(p, [&](std::uint32_t s, std::uint32_t other) {
+                if (family.forces->state[s] != SpringState::implicit) return;
                 const Coupling c = coupling_of(family, s, h);
                 diagonal.noalias() += c.scale * c.u * c.u.transpose();
                 diagonal.diagonal().array() += c.a;
@@ -83,7 +81,7 @@ void assemble(std::span<const SpringFamily> families, const Load& load, const Co
                 } else {
                     out.entries[e++] = {out.row_of[other], c.a, std::sqrt(c.scale) * c.u};
                 }
-            }
+            });
         }
         out.diagonal[row] = diagonal;
         out.b[row] = b;

@@ -174,9 +174,8 @@ void set_bounds(const Scene& scene, const Placement& placement, DrawScene& out) 
 
 // Median rest length of the stretch springs.
 float spacing_of(const ClothModel& model) {
-    std::vector<double> rest(
-        model.springs.rest.begin(),
-        model.springs.rest.begin() + static_cast<std::ptrdiff_t>(model.springs.stretch_count));
+    std::vector<double> rest(model.springs.stretch_count);
+    for (std::size_t s = 0; s < rest.size(); ++s) rest[s] = model.springs.rest[s];
     if (rest.empty()) return DrawScene{}.spacing;
     const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);
     std::nth_element(rest.begin(), middle, rest.end());

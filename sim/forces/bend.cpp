@@ -63,23 +63,25 @@ double bend_energy(double length, double rest, double stiffness, double slope, d
 void limit_bend(const BendSprings& springs, std::span<const double> mass, double h, BendLimit& limit) {
     if (limit.h == h && limit.slope.size() == springs.size()) return;
     limit.h = h;
-    limit.slope.resize(springs.size());
-    limit.crossing.resize(springs.size());
+    std::vector<double>&slope = limit.slope.own(), &crossing = limit.crossing.own();
+    slope.resize(springs.size());
+    crossing.resize(springs.size());
     parallel_chunks(springs.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) {
             const double bound =
                 bend_slope_limit * std::min(mass[springs.i[s]], mass[springs.j[s]]) / (h * h);
-            limit.slope[s] = std::min(springs.slope[s], bound);
+            slope[s] = std::min(springs.slope[s], bound);
             // On a grid nearly every spring is like the one before it.
             const bool same = s > begin && springs.rest[s] == springs.rest[s - 1] &&
-                              springs.stiffness[s] == springs.stiffness[s - 1] &&
-                              limit.slope[s] == limit.slope[s - 1];
-            limit.crossing[s] = same ? limit.crossing[s - 1]
-                                     : bend_crossing(springs.rest[s], springs.stiffness[s], limit.slope[s]);
+                              springs.stiffness[s] == springs.stiffness[s - 1] && slope[s] == slope[s - 1];
+            crossing[s] =
+                same ? crossing[s - 1] : bend_crossing(springs.rest[s], springs.stiffness[s], slope[s]);
         }
     });
     limit.limited = 0;
-    for (std::size_t s = 0; s < springs.size(); ++s) limit.limited += limit.slope[s] < springs.slope[s];
+    for (std::size_t s = 0; s < springs.size(); ++s) limit.limited += slope[s] < springs.slope[s];
+    limit.slope.code();
+    limit.crossing.code();
 }
 
 void bend_forces(const BendSprings& springs, const BendLimit& limit, std::span<const Vec3> x,
@@ -103,12 +105,13 @@ void bend_jacobians(const BendSprings& springs, const BendLimit& limit, std::spa
         out.springs.i = springs.i;
         out.springs.j = springs.j;
         out.springs.rest = springs.rest;
-        out.springs.stiffness.assign(springs.size(), 0.0);
-        out.springs.damping.assign(springs.size(), 0.0);
+        out.springs.stiffness.own().assign(springs.size(), 0.0);
+        out.springs.damping.own().assign(springs.size(), 0.0);
         out.springs.stretch_count = 0;
         out.forces.resize(springs.size());
     }
     bend_forces(springs, limit, x, out.forces.force);
+    std::vector<double>& stiffness = out.springs.stiffness.own();
     parallel_each(springs.size(), [&](std::size_t s) {
         out.forces.transverse[s] = 0;
         out.forces.state[s] = SpringState::inactive;
@@ -117,8 +120,7 @@ void bend_jacobians(const BendSprings& springs, const BendLimit& limit, std::spa
         const double length = d.norm();
         out.forces.direction[s] = d / length;
         out.forces.state[s] = SpringState::implicit;
-        out.springs.stiffness[s] =
-            bend_force_slope(length, springs.rest[s], springs.stiffness[s], limit.slope[s]);
+        stiffness[s] = bend_force_slope(length, springs.rest[s], springs.stiffness[s], limit.slope[s]);
     });
 }
 

@@ -17,9 +17,9 @@ namespace unravel {
 /// is a circular arc of its flat length and pushes its ends apart; it never pulls.
 struct BendSprings {
     std::vector<std::uint32_t> i, j;  ///< (springs) particles, i < j
-    std::vector<double> rest;         ///< (springs) L [m], the flat length
-    std::vector<double> stiffness;    ///< (springs) k_b [N·m²]
-    std::vector<double> slope;        ///< (springs) c_b [N/m], before the step's own limit
+    Coefficients rest;                ///< (springs) L [m], the flat length
+    Coefficients stiffness;           ///< (springs) k_b [N·m²]
+    Coefficients slope;               ///< (springs) c_b [N/m], before the step's own limit
     std::size_t size() const { return i.size(); }
     /// One more, between particles p and q in either order; c_b such that the push has reached the arc's once
     /// the spring is shorter by the buckling strain.
@@ -34,10 +34,10 @@ struct BendSprings {
 
 /// What depends on the step size: the slope that explicit treatment bears, and where it meets the arc's push.
 struct BendLimit {
-    double h = 0;                  ///< s, the step these were made for
-    std::vector<double> slope;     ///< (springs) N/m, min(c_b, limit·m/h²)
-    std::vector<double> crossing;  ///< (springs) m, length below which the arc's push is the weaker
-    std::size_t limited = 0;       ///< springs whose slope the step size reduced
+    double h = 0;             ///< s, the step these were made for
+    Coefficients slope;       ///< (springs) N/m, min(c_b, limit·m/h²)
+    Coefficients crossing;    ///< (springs) m, length below which the arc's push is the weaker
+    std::size_t limited = 0;  ///< springs whose slope the step size reduced
 };
 
 /// Share of m/h² that the slope of an explicit bend spring may reach. Forward–backward Euler bears an

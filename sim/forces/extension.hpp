@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "sim/forces/adjacency.hpp"
+#include "sim/forces/coefficients.hpp"
 #include "sim/math.hpp"
 
 namespace unravel {
@@ -15,9 +17,9 @@ namespace unravel {
 /// (sim/kernels/grid_springs.hpp).
 struct ExtensionSprings {
     std::vector<std::uint32_t> i, j;  ///< (springs) particles, i < j
-    std::vector<double> rest;         ///< (springs) L [m]
-    std::vector<double> stiffness;    ///< (springs) k_s [N/m]
-    std::vector<double> damping;      ///< (springs) k_d [N·s/m]
+    Coefficients rest;                ///< (springs) L [m]
+    Coefficients stiffness;           ///< (springs) k_s [N/m]
+    Coefficients damping;             ///< (springs) k_d [N·s/m]
     std::size_t stretch_count = 0;    ///< springs [0, stretch_count) are stretch, the rest shear
     std::size_t size() const { return i.size(); }
     /// One more, between particles p and q in either order.
@@ -44,20 +46,6 @@ struct ExtensionForces {
     std::vector<SpringState> state;  ///< (springs)
     void resize(std::size_t springs);
 };
-
-/// Where a particle's springs are: entries [start[p], start[p+1]) name the spring and the particle at its
-/// other end, sorted by spring.
-struct Adjacency {
-    struct Entry {
-        std::uint32_t spring, other;
-    };
-    std::vector<std::uint32_t> start;  ///< (particles + 1)
-    std::vector<Entry> entries;        ///< (2 × springs)
-};
-
-/// Adjacency of the graph with edges (i[s], j[s]).
-Adjacency adjacency_of(std::size_t particles, std::span<const std::uint32_t> i,
-                       std::span<const std::uint32_t> j);
 
 /// One kind of springs as the linear algebra sees it: those of the cloth, or the temporary ones of
 /// self-collision.

@@ -54,7 +54,7 @@ public:
     static constexpr std::size_t numbers = 11;  // x, drift, what springs pull by; ours, mass
     explicit TurnedRows(const Loader& l) : l_(l), stride_(static_cast<std::size_t>(l.nu) + 1) {
         thread_local std::vector<double> memory;
-        memory.resize(2 * numbers * stride_);
+        memory.resize(2 * (numbers + 1) * stride_);
         memory_ = memory.data();
     }
     void turn(int j) {
@@ -76,6 +76,8 @@ public:
         return {{row(j, 0), row(j, 1), row(j, 2)}, {row(j, 3), row(j, 4), row(j, 5)}, row(j, 9), row(j, 10)};
     }
     Row pull(int j) const { return {row(j, 6), row(j, 7), row(j, 8)}; }
+    // For a row of springs' coefficients: two.
+    double* coefficients(std::size_t which) const { return memory_ + (2 * numbers + which) * stride_; }
     bool any_held(int j) const { return held_[j & 1]; }
     // What the column past the seam got is the first one's.
     void fold(int j) const {
@@ -130,7 +132,8 @@ double couple(const Loader& l, int j, bool ours, TurnedRows& turned) {
         float* const blocks = l.out.couplings.data() + l.at(0, j, 16) + 4 * static_cast<int>(f) * l.pitch;
         const double most =
             couple_row(turned.end(j).from(from_i), turned.end(j + down).from(to_i), springs.rest[s],
-                       springs.stiffness.data() + s, springs.damping.data() + s,
+                       springs.stiffness.run(s, rows.per_row, turned.coefficients(0)),
+                       springs.damping.run(s, rows.per_row, turned.coefficients(1)),
                        l.family.forces->state.data() + s, l.h, rows.per_row, from(turned.pull(j), from_i),
                        from(turned.pull(j + down), to_i), ours ? blocks : nullptr, l.pitch);
         stiffest = std::max(stiffest, most);

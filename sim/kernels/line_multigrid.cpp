@@ -47,7 +47,9 @@ void LineMultigrid::set_up(Level& level, int kind) {
     const std::size_t line = 8 * (kind == 0 ? 10 : 12) * static_cast<std::size_t>(g.columns());
     const int blocks = (g.nv + 7) / 8;
     level.lines_u.resize(line * static_cast<std::size_t>(blocks));
-    for (std::vector<float>* vector : {&level.r, &level.z, &level.t}) vector->resize(field(g, 3));
+    level.t.resize(field(g, 3));
+    // What the finest level takes and gives is the caller's.
+    for (std::vector<float>* vector : {&level.r, &level.z}) vector->resize(kind == 0 ? 0 : field(g, 3));
     const int strips = (g.columns() + strip - 1) / strip;
     const auto along_v = [&](int k) {
         kernels.line.factor_v[kind](g, k * strip, std::min((k + 1) * strip, g.columns()), level.diagonal,

@@ -115,8 +115,8 @@ std::vector<double> mesh_masses(const Cloth& cloth) {
     return mass;
 }
 
-void add_mesh_air(const Cloth& cloth, std::uint32_t first, AirCells& air) {
-    for (const Cell& cell : cloth.geometry->cells) {
+void add_mesh_air(const MeshCloth& mesh, std::uint32_t first, AirCells& air) {
+    for (const MeshCloth::Cell& cell : mesh.cells) {
         const auto at = [&](std::size_t k) { return first + cell.vertex[k]; };
         air.corners.push_back({at(0), at(1), at(2), at(cell.corners == 4 ? 3 : 2)});
     }

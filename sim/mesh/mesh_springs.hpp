@@ -32,7 +32,7 @@ void add_mesh_bends(const Cloth& cloth, std::uint32_t first, BendSprings& bends)
 std::vector<double> mesh_masses(const Cloth& cloth);
 
 /// The cells as air meets them; triangles repeat their last corner.
-void add_mesh_air(const Cloth& cloth, std::uint32_t first, AirCells& air);
+void add_mesh_air(const MeshCloth& mesh, std::uint32_t first, AirCells& air);
 
 /// Whether vertex belongs to the group; a group that is not there has no vertices.
 bool in_group(const MeshCloth& mesh, const std::string& group, std::uint32_t vertex);

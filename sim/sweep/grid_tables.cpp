@@ -20,7 +20,7 @@ void RowTable::build(std::span<const double> values, std::size_t width) {
 
 void build_tables(const ClothModel& model, const GridSprings& grid, const BendLimit& limit,
                   GridTables& tables) {
-    const auto of = [](const std::vector<double>& values) {
+    const auto of = [](const Coefficients& values) {
         return [&values](std::uint32_t s) { return values[s]; };
     };
     const auto extension = extension_rows(grid);

@@ -19,7 +19,7 @@ def resident(process):
 
 
 def test_memory_stays_flat(reference, folder):
-    frames = int(os.environ.get("UNRAVEL_FRAMES", "300"))
+    frames = int(os.environ.get("UNRAVEL_FRAMES", "600"))
     if frames == 0:
         print("    not looked at", flush=True)
         return

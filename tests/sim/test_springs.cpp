@@ -97,7 +97,7 @@ TEST_CASE("slack springs have neither force nor Jacobian, but in the band a Jaco
 TEST_CASE("coincident particles make no force and no NaN") {
     Pair pair(1.07);
     pair.x[1] = pair.x[0];
-    pair.springs.rest[0] = 0.0;
+    pair.springs.rest.own()[0] = 0.0;
     const ExtensionForces f = pair.at(pair.x, pair.v);
     CHECK(f.force[0].isZero());
     CHECK(f.state[0] == SpringState::inactive);

@@ -160,7 +160,8 @@ TEST_CASE("effects that the scene does not name hold no memory and take no time"
     const ClothModel& model = simulation.model;
     const StepWorkspace& ws = simulation.ws;
     const std::pair<const char*, std::size_t> held[] = {
-        {"air", model.air.corners.capacity() + model.air.start.capacity() + model.air.cells.capacity()},
+        {"air",
+         ws.air_cells.corners.capacity() + ws.air_cells.start.capacity() + ws.air_cells.cells.capacity()},
         {"air forces", ws.air.capacity()},
         {"pins", model.pins.capacity()},
         {"solids", model.solids.capacity()},
@@ -169,7 +170,7 @@ TEST_CASE("effects that the scene does not name hold no memory and take no time"
         {"friction", ws.friction.capacity()},
         {"reactions", ws.reaction.capacity()},
         {"contacts", simulation.state.contacts.capacity()},
-        {"bends", model.bends.i.capacity() + model.bends.stiffness.capacity() + ws.bend.capacity()},
+        {"bends", model.bends.i.capacity() + model.bends.stiffness.bytes() + ws.bend.capacity()},
         {"self-collision", ws.self.springs.i.capacity() + ws.self.forces.force.capacity() +
                                ws.self.adjacency.start.capacity() + ws.self.x_searched.capacity() +
                                ws.self.candidate_i.capacity() + ws.self.voxel_start.capacity() +

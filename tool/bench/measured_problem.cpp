@@ -40,7 +40,6 @@ MeasuredProblem::MeasuredProblem(const Scene& scene, double start, int threads)
         while (simulation_.state.t < start) report_ = next_step(simulation_);
     });
     h_ = 1.0 / (simulation_.fps * simulation_.steps_per_frame);
-    start_ = simulation_.state;
     if (simulation_.options.integrator == Integrator::automatic ||
         simulation_.options.integrator == Integrator::explicit_)
         simulation_.options.integrator = Integrator::adaptive_imex;
@@ -53,7 +52,7 @@ MeasuredProblem::Steps MeasuredProblem::run_steps(const StepKind& kind, int coun
     options.solve.preconditioner = kind.preconditioner;
     options.decompose = kind.decompose;
     options.substeps = 0;
-    ClothState state = start_;
+    ClothState state = simulation_.state;
     Steps out;
     tbb::task_arena arena(kind.threads);
     arena.execute([&] {
@@ -76,7 +75,7 @@ MeasuredProblem::Steps MeasuredProblem::run_steps(const StepKind& kind, int coun
 
 void MeasuredProblem::capture(int threads) {
     StepWorkspace& ws = simulation_.ws;
-    ClothState state = start_;
+    ClothState state = simulation_.state;
     guess_ = state.dv;
     tbb::task_arena arena(threads);
     const StepReport report =

@@ -72,8 +72,7 @@ private:
     StepSystem system(const Components& components) const;
     Solve solve(const Components& components, const SolveOptions& options, int threads);
 
-    Simulation simulation_;
-    ClothState start_;
+    Simulation simulation_;  // its state is where every step starts
     double h_ = 0;
     StepReport report_;
     std::vector<Vec3> guess_;

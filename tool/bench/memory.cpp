@@ -3,6 +3,7 @@
 #include <malloc.h>
 #include <unistd.h>
 
+#include <concepts>
 #include <fstream>
 #include <string>
 
@@ -40,14 +41,15 @@ double row_share(const System& system, const Components& components) {
     for (std::size_t c = 0; c < components.count(); ++c) away += system.elsewhere[c] ? components.size(c) : 0;
     return 1 - away / static_cast<double>(system.rows());
 }
+template <typename... T>
+requires(std::same_as<T, Coefficients>&&...) double bytes(const T&... of) {
+    return (0.0 + ... + static_cast<double>(of.bytes()));
+}
 double bytes(const ExtensionSprings& s) {
-    return bytes(s.i, s.j, s.rest, s.stiffness, s.damping);
+    return bytes(s.i, s.j) + bytes(s.rest, s.stiffness, s.damping);
 }
 double bytes(const ExtensionForces& f) {
     return bytes(f.force, f.direction, f.transverse, f.state);
-}
-double bytes(const Adjacency& a) {
-    return bytes(a.start, a.entries);
 }
 double bytes(const ClothState& s) {
     return bytes(s.x, s.v, s.dv, s.contacts, s.x_previous, s.v_previous);
@@ -95,23 +97,25 @@ MemoryRecord account_memory(const Simulation& simulation, double peak) {
         record.arrays.emplace_back(name, size / n);
     };
     add("stretch and shear springs", bytes(m.springs));
-    add("bend springs", bytes(m.bends.i, m.bends.j, m.bends.rest, m.bends.stiffness, m.bends.slope));
-    add("whose springs: adjacency", bytes(m.spring_adjacency) + bytes(w.bend_adjacency));
-    add("air's cells", bytes(m.air.corners, m.air.start, m.air.cells));
+    add("bend springs", bytes(m.bends.i, m.bends.j) + bytes(m.bends.rest, m.bends.stiffness, m.bends.slope));
+    add("whose springs: adjacency",
+        static_cast<double>(m.spring_adjacency.bytes() + w.bend_adjacency.bytes()));
+    add("air's cells", bytes(w.air_cells.corners, w.air_cells.start, w.air_cells.cells));
     add("mass", bytes(m.mass));
     add("state, and the one before", bytes(simulation.state) + bytes(w.before));
     add("stage: x~, v~, x*, v*",
         bytes(w.stage.own.x, w.stage.own.v, w.stage.own.x_at, w.stage.own.v_at, w.stage.x_linear));
-    add("forces along rows", static_cast<double>(w.rows.bytes()) + bytes(w.gathered));
+    add("forces along rows", static_cast<double>(w.rows.bytes()));
     add("forces of stretch and shear", bytes(w.extension));
-    add("forces of bending and its limit", bytes(w.bend, w.bend_limit.slope, w.bend_limit.crossing) +
+    add("forces of bending and its limit", bytes(w.bend) + bytes(w.bend_limit.slope, w.bend_limit.crossing) +
                                                bytes(w.implicit_bend.springs) +
                                                bytes(w.implicit_bend.forces));
     add("forces of air", bytes(w.air));
     add("base, drift, impulse and other vectors",
-        bytes(w.ahead, w.drift_from_start, w.base, w.friction, w.impulse, w.drift, w.end, w.guess, w.dv,
-              w.gathered, w.reaction, w.taut));
-    add("self-collision", bytes(w.self.springs) + bytes(w.self.forces) + bytes(w.self.adjacency) +
+        bytes(w.ahead, w.drift_from_start, w.corrected, w.friction, w.impulse, w.drift, w.guess, w.dv,
+              w.reaction, w.taut));
+    add("self-collision", bytes(w.self.springs) + bytes(w.self.forces) +
+                              static_cast<double>(w.self.adjacency.bytes()) +
                               bytes(w.self.candidate_i, w.self.candidate_j, w.self.x_searched,
                                     w.self.voxel_start, w.self.voxel_particles, w.self.voxel_of));
     add("components", bytes(w.parent, w.components.label, w.components.order, w.components.start));

@@ -143,8 +143,8 @@ Json particle_numbers(const InspectedStep& step, std::int64_t particle) {
         json["contacts"].push_back(
             {{"solid", model.solids[c.solid].name}, {"held", c.held}, {"force", c.force}});
     }
-    for (std::uint32_t k = model.spring_adjacency.start[p]; k < model.spring_adjacency.start[p + 1]; ++k)
-        json["springs"].push_back(spring_numbers(step, model.spring_adjacency.entries[k].spring));
+    model.spring_adjacency.each(
+        p, [&](std::uint32_t s, std::uint32_t) { json["springs"].push_back(spring_numbers(step, s)); });
     return json;
 }
 
