@@ -22,16 +22,18 @@ Eigen::Matrix4f look_at(const Vec3f& eye, const Vec3f& target, const Vec3f& up) 
     return view;
 }
 
-Camera make_camera(const CameraView& view, float aspect, const Vec3f& low, const Vec3f& high, float reach) {
+Projection make_camera(const CameraView& view, float aspect, const Vec3f& low, const Vec3f& high,
+                       float reach) {
     const Vec3f centre = 0.5f * (low + high);
     const float radius = 0.5f * (high - low).norm(), distance = (view.position - centre).norm();
-    // Nearer than the scene's sphere where the camera stands outside it; depth precision is ample for the
-    // rest.
-    const float near = std::max(distance - 1.5f * radius, 0.02f * std::max(distance, radius));
+    // Nearer than the scene's sphere where the camera stands outside it, and than the ground before a scene
+    // that is small; depth precision is ample for the rest.
+    const float near =
+        std::max(std::min(distance - 1.5f * radius, 0.2f * distance), 0.02f * std::max(distance, radius));
     const float far = distance + std::max(2 * radius, reach);
     const float focal = 1 / std::tan(0.5f * view.fov * std::numbers::pi_v<float> / 180);
 
-    Camera camera;
+    Projection camera;
     camera.view = look_at(view.position, view.target, view.up);
     camera.projection = Eigen::Matrix4f::Zero();
     camera.projection(0, 0) = focal / aspect;

@@ -5,7 +5,7 @@
 namespace unravel {
 
 /// Matrices of a camera, column vectors, GL clip conventions (x right, y up, depth −1 … 1).
-struct Camera {
+struct Projection {
     Eigen::Matrix4f view, projection;
     Vec3f position;           ///< m
     float pixels_per_radian;  ///< per unit of frame height: multiply by the height in pixels, divide by depth
@@ -14,7 +14,8 @@ struct Camera {
 
 /// Camera with its depth range fitted to the scene. `low`, `high`: bounds [m]; `reach`: how far the ground
 /// goes from their centre [m]. An up vector along the line of sight is replaced by another one.
-Camera make_camera(const CameraView& view, float aspect, const Vec3f& low, const Vec3f& high, float reach);
+Projection make_camera(const CameraView& view, float aspect, const Vec3f& low, const Vec3f& high,
+                       float reach);
 
 /// World to the camera's frame, which looks along −z.
 Eigen::Matrix4f look_at(const Vec3f& eye, const Vec3f& target, const Vec3f& up);

@@ -141,7 +141,7 @@ void Renderer::Parts::check(DrawStyle style, const DrawFrame& frame) const {
 
 void Renderer::Parts::update_block(DrawStyle style, const CameraView& view) {
     const float aspect = static_cast<float>(framebuffer.width()) / static_cast<float>(framebuffer.height());
-    const Camera camera =
+    const Projection camera =
         make_camera(view, aspect, scene->bounds_low, scene->bounds_high, 1.5f * solids.reach());
     const int factor = framebuffer.supersample();
     block.view_projection = camera.projection * camera.view;

@@ -5,44 +5,24 @@
 #include <algorithm>
 
 #include "base/whole_file.hpp"
-#include "render/png.hpp"
-#include "render/renderer.hpp"
 #include "tool/cluster/cluster.hpp"
 #include "tool/hard_case.hpp"
 #include "tool/interrupt.hpp"
 #include "tool/options.hpp"
 #include "tool/render_options.hpp"
 #include "tool/stability_map.hpp"
+#include "tool/stability_picture.hpp"
 #include "tool/stability_points.hpp"
 #include "tool/stability_report.hpp"
-#include "tool/view.hpp"
 
 namespace unravel {
 
 namespace {
 
-constexpr int picture_width = 480, picture_height = 270;
-
 bool is_asked_for(const HardCase& hard, const std::vector<std::string>& names) {
     return names.empty() || std::any_of(names.begin(), names.end(), [&](const std::string& name) {
                return hard.name.find(name) != std::string::npos;
            });
-}
-
-// A scene that is refused has no state to be drawn.
-bool draw_case(const GlContext& context, const HardOutcome& outcome, const std::filesystem::path& file) {
-    if (!outcome.scene || outcome.last.state.x.empty()) return false;
-    const Scene& scene = *outcome.scene;
-    Placement placement;
-    const ClothModel model = build_model(scene, placement);
-    const DrawScene drawn = make_draw_scene(scene, model, placement);
-    DrawFrame frame;
-    make_draw_frame(scene, model, outcome.last, std::vector<Rgb>(model.size()), frame);
-    Renderer renderer(context, drawn, {picture_width, picture_height, 4, 1});
-    Image image;
-    renderer.draw(DrawStyle::textured, frame, image);
-    write_png(file, image);
-    return true;
 }
 
 void tell(const StabilityMap& map) {
@@ -90,7 +70,7 @@ void create_output(const Study& study) {
 
 HardLine do_case(const HardCase& hard, const Study& study, const std::optional<GlContext>& context) {
     HardLine line{hard, run_hard_case(hard), ""};
-    if (context && draw_case(*context, line.outcome, study.output / (hard.name + ".png")))
+    if (context && draw_hard_case(*context, line.outcome, study.output / (hard.name + ".png")))
         line.picture = hard.name + ".png";
     line.outcome.last = {};
     return line;
