@@ -1,5 +1,7 @@
 #include "tool/interrupt.hpp"
 
+#include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <initializer_list>
 
@@ -7,15 +9,18 @@ namespace unravel {
 
 namespace {
 
-// A signal handler can reach nothing but a global.
-volatile std::sig_atomic_t received = 0;
+// A signal handler can reach nothing but a global; it runs on any thread, and others read.
+std::atomic<int> received{0};
+static_assert(std::atomic<int>::is_always_lock_free);
 
 extern "C" void on_signal(int number) {
-    if (received != 0) {
+    // Whoever was interrupted may be about to ask what went wrong with it.
+    const int error = errno;
+    if (received.exchange(number) != 0) {
         std::signal(number, SIG_DFL);
         std::raise(number);
     }
-    received = number;
+    errno = error;
 }
 
 }  // namespace
