@@ -1,16 +1,20 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "sim/components.hpp"
 #include "sim/constraints.hpp"
+#include "sim/kernels/aggregates.hpp"
 #include "sim/preconditioner.hpp"
 #include "sim/sweep_preconditioner.hpp"
 #include "sim/system.hpp"
 
 namespace unravel {
+
+class Aggregation;
 
 struct SolveOptions {
     Preconditioner preconditioner = Preconditioner::constrained_block;
@@ -35,14 +39,27 @@ struct SolveWorkspace {
     UntouchedVector<Vec3> r, p, q;              ///< (rows)
     std::vector<double> partials;               ///< (chunks of rows)
     std::vector<const Constraint*> constraint;  ///< (rows) null: free
+    /// Of all particles, made once by who knows the cloth's springs; empty: no component gets cycles.
+    Aggregates aggregates;
+    std::vector<std::shared_ptr<Aggregation>> aggregations;  ///< one per component that may get them
+    std::vector<Aggregation*> aggregation_of;                ///< (components) or null
 };
+
+/// Rows from which a component is large enough for aggregation; none is for other preconditioners.
+inline std::uint32_t least_rows_of_aggregation(Preconditioner kind) {
+    return kind == Preconditioner::aggregation ? 64u
+           : kind == Preconditioner::automatic ? 4096u
+                                               : 0xffffffffu;
+}
 
 /// Solves Sx = Sb, (I − S)x = (I − S)z (Eq. 9) by modified preconditioned conjugate gradients (Baraff &
 /// Witkin 1998, Sec. 5.3) from x₀ = S y + (I − S) z (Ascher & Boxerman 2003), y = `guess`: each component is
 /// a task of its own on its own rows; a large one is cut into chunks of rows besides. Result in ws.x, in row
 /// order; rows of the fully constrained hold z. A component of one row is solved directly and counts as one
 /// iteration of one multiply. Components that A leaves to others are passed over. Preconditioners that need a
-/// grid (automatic, stencil_block, multigrid) are the constrained block here.
+/// grid (stencil_block, multigrid) are the constrained block here. A large component gets cycles by
+/// aggregation where `aggregation` asks for them, or where `automatic` expects the constrained block to take
+/// long; if one takes longer than it was expected to, the other takes over, once.
 ///   guess   (particles)   [m/s]
 ///   out     (components)
 void solve(const System& A, const Components& components, const Constraints& constraints,

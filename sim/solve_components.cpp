@@ -98,6 +98,23 @@ void take_solution(const GridSystem& system, const Components& components, std::
     });
 }
 
+// What cycles by aggregation walk on, made when the first component is there that may get them.
+void make_aggregates_where_needed(const StepSystem& step, const SolveOptions& options,
+                                  const std::vector<std::uint8_t>& elsewhere, SolveWorkspace& ws) {
+    if (ws.aggregates.particles() > 0) return;
+    const std::uint32_t least = least_rows_of_aggregation(options.preconditioner);
+    bool needed = false;
+    for (std::size_t c = 0; c < step.components.count(); ++c)
+        needed = needed || (step.components.size(c) >= least && (elsewhere.empty() || !elsewhere[c]));
+    if (!needed) return;
+    std::vector<Aggregates::Join> joins;
+    if (step.stitches) {
+        const Stitches& all = *step.stitches;
+        for (std::size_t s = 0; s < all.size(); ++s) joins.push_back({all.i[s], all.j[s], all.stiffness[s]});
+    }
+    ws.aggregates = make_aggregates(step.load.mass.size(), *step.families[0].springs, joins);
+}
+
 }  // namespace
 
 void assemble_components(const StepSystem& step, const SolveOptions& options, GridSolves& grids,
@@ -122,6 +139,7 @@ void solve_components(const StepSystem& step, const SolveOptions& options, GridS
                       SolveWorkspace& ws, std::vector<ComponentSolve>& out) {
     SolvePlan& plan = grids.plan;
     const auto solve_rows = [&] {
+        make_aggregates_where_needed(step, options, plan.elsewhere, ws);
         solve(rows, step.components, step.constraints, step.guess, options, ws, out);
     };
     tbb::task_group giants;

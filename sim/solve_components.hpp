@@ -7,6 +7,7 @@
 
 #include "sim/kernels/grid_cg.hpp"
 #include "sim/kernels/grid_springs.hpp"
+#include "sim/model.hpp"
 #include "sim/solve.hpp"
 
 namespace unravel {
@@ -43,8 +44,9 @@ struct StepSystem {
     const Load& load;
     const Components& components;
     const Constraints& constraints;
-    std::span<const Vec3> guess;  ///< (particles) y, from which the solve starts [m/s]
-    double h;                     ///< s
+    std::span<const Vec3> guess;         ///< (particles) y, from which the solve starts [m/s]
+    double h;                            ///< s
+    const Stitches* stitches = nullptr;  ///< of the cloths, which aggregates reach across
 };
 
 /// Plans which solver each component gets and assembles A and b (Eq. 5) for it: rows in `rows`, which for a

@@ -55,7 +55,8 @@ void compare_whole(const ClothModel& model, const StepOptions& options,
     report.rvm_whole = report.rvm_whole.value_or(0);
     if (!ws.coupled) return;
     whole_cloth(model.size(), ws.whole);
-    const StepSystem system{model.grids, families, load, ws.whole, ws.constraints, guess, ws.stage.h};
+    const StepSystem system{model.grids,    families, load,       ws.whole,
+                            ws.constraints, guess,    ws.stage.h, &model.stitches};
     assemble_components(system, options.solve, ws.whole_grid_solves, ws.whole_system);
     solve_components(system, options.solve, ws.whole_grid_solves, ws.whole_system, ws.whole_solve,
                      ws.whole_solves);
@@ -227,8 +228,8 @@ void solve_stage(const ClothModel& model, const StepOptions& options, std::span<
             whole_cloth(n, ws.components);
         }
         timer.lap(report.times.graph);
-        const StepSystem system{model.grids,    families, load,      ws.components,
-                                ws.constraints, guess,    ws.stage.h};
+        const StepSystem system{model.grids,    families, load,       ws.components,
+                                ws.constraints, guess,    ws.stage.h, &model.stitches};
         assemble_components(system, options.solve, ws.grid_solves, ws.system);
         timer.lap(report.times.assembly);
         solve_components(system, options.solve, ws.grid_solves, ws.system, ws.solve, ws.solves);

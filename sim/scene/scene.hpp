@@ -181,7 +181,7 @@ struct Solid {
 enum class Integrator { explicit_, implicit, newton, imex, adaptive_imex, bdf2, adaptive_imex2, automatic };
 /// `automatic` chooses per component. `stencil_block` is the constrained block, and `multigrid` a cycle by
 /// lines, in single precision on the stencil of a grid; what lies on no grid gets the constrained block on
-/// rows.
+/// rows. `aggregation` is a multigrid cycle on rows, on whatever mesh they are.
 enum class Preconditioner {
     none,
     diagonal,
@@ -191,7 +191,8 @@ enum class Preconditioner {
     ic0,
     automatic,
     stencil_block,
-    multigrid
+    multigrid,
+    aggregation
 };
 
 /// How bend springs are treated: as the integrator has it (implicitly by implicit and newton), or explicitly

@@ -88,7 +88,8 @@ void MeasuredProblem::capture(int threads) {
 
 StepSystem MeasuredProblem::system(const Components& components) const {
     const StepWorkspace& ws = simulation_.ws;
-    return {simulation_.model.grids, families_, load_, components, ws.constraints, guess_, ws.stage.h};
+    return {simulation_.model.grids, families_, load_,      components,
+            ws.constraints,          guess_,    ws.stage.h, &simulation_.model.stitches};
 }
 
 MeasuredProblem::Solve MeasuredProblem::solve(const Components& components, const SolveOptions& options,
