@@ -44,8 +44,9 @@ int command_export(const Options& options) {
     const ClothModel model = build_model(scene, placement);
     const int frames = cached_frames(run, scene, hash, model.size(), model.springs.size());
     if (frames <= clip.first)
-        throw FolderError(fmt::format("'{}' holds {} usable frames, and the first asked for is {}",
-                                      run.root.string(), frames, clip.first));
+        throw FolderError(fmt::format("'{}' holds {} usable frames, and the first asked for is {}: {}",
+                                      run.root.string(), frames, clip.first,
+                                      why_unusable(run, frames, hash)));
     ExportSource source{model, {}, clip.first, std::min(clip.last, frames - 1), scene.clip.fps, {}, {}};
     for (const ClothPatch& patch : model.cloths) source.surfaces.push_back(surface_of(patch));
     source.read = [&](int frame) {

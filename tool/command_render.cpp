@@ -100,10 +100,9 @@ int command_render(const Options& options) {
     const ClothModel model = build_model(scene, placement);
     const int frames = cached_frames(cached, as_run, hash, model.size(), model.springs.size());
     if (frames <= (turns ? 0 : clip_options.first)) {
-        throw FolderError(
-            fmt::format("'{}' holds {} usable frames of this scene, and the first asked for is {}: was it "
-                        "made from another scene, or stopped early?",
-                        cached.root.string(), frames, clip_options.first));
+        throw FolderError(fmt::format("'{}' holds {} usable frames, and the first asked for is {}: {}",
+                                      cached.root.string(), frames, clip_options.first,
+                                      why_unusable(cached, frames, hash)));
     }
     if (turns)
         return draw_turntable(options, scene, model, placement, {cached, folder}, clip_options,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "render/png.hpp"
@@ -46,8 +47,9 @@ std::array<Image, 2> draw_entry(const Entry& entry, const Options& options, std:
     const int frames = cached_frames(entry.folder, scene, hash, model.size(), model.springs.size());
     const int frame = entry.frame < 0 ? frames - 1 : entry.frame;
     if (frame < 0 || frame >= frames)
-        throw FolderError(fmt::format("'{}' holds {} frames of its scene, and frame {} is asked for",
-                                      entry.folder.root.string(), frames, frame));
+        throw FolderError(fmt::format("'{}' holds {} usable frames, and frame {} is asked for: {}",
+                                      entry.folder.root.string(), frames, std::max(frame, 0),
+                                      why_unusable(entry.folder, frames, hash)));
     const auto edges = drawn_edges(model);
     ComponentColors colors;
     DrawFrame drawing;

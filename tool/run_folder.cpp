@@ -2,15 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <cstring>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
 
 #include "base/file_errors.hpp"
 #include "base/whole_file.hpp"
+#include "sim/frame_record.hpp"
 #include "sim/mesh/mesh_solid.hpp"
 #include "sim/scene/limits.hpp"
 #include "sim/scene/load.hpp"
 #include "tool/clip_view.hpp"
+#include "tool/version.hpp"
 
 namespace unravel {
 
@@ -19,6 +23,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t largest_scene = 16 << 20;
+constexpr std::size_t largest_run_json = std::size_t{64} << 20;
+constexpr std::size_t largest_record = std::size_t{4} << 30;
 
 // The scene without what only the picture depends on, and without how long it goes on: a clip may be made
 // longer.
@@ -38,6 +44,16 @@ std::string first_difference(const std::string& before, const std::string& now) 
                                y.empty() ? "nothing" : y);
     }
     return "it differs";
+}
+
+// The version of the tool that a folder's run was made with, as its run.json says.
+std::string version_of_run(const RunFolder& folder) {
+    const std::string unknown = "of a version that is not known";
+    if (!fs::exists(folder.run_json())) return unknown;
+    const auto run =
+        nlohmann::json::parse(read_whole_text(folder.run_json(), largest_run_json), nullptr, false);
+    const bool told = run.is_object() && run.contains("version") && run["version"].is_string();
+    return told ? run["version"].get<std::string>() : unknown;
 }
 
 void create_folder(const fs::path& folder) {
@@ -172,6 +188,41 @@ int cached_frames(const RunFolder& folder, const Scene& scene, std::uint64_t has
         ++frames;
     }
     return frames;
+}
+
+std::string why_unusable(const RunFolder& folder, int frame, std::uint64_t scene_hash) {
+    if (!fs::exists(folder.record(frame)))
+        return fmt::format(
+            "there is no frame {}: the run ended before it, or was stopped (`unravel run SCENE -o {} "
+            "--resume` "
+            "goes on)",
+            frame, folder.root.string());
+    const std::vector<std::uint8_t> bytes = read_whole_file(folder.record(frame), largest_record);
+    const std::string again =
+        fmt::format("`unravel run SCENE -o {} --resume` makes it again", folder.root.string());
+    // Records begin with their format's version, then the hash of their scene.
+    const std::size_t name = record_magic.size() - 1;
+    const bool record = bytes.size() >= record_magic.size() + sizeof scene_hash &&
+                        std::memcmp(bytes.data(), record_magic.data(), name) == 0;
+    if (!record) return fmt::format("frame {} is damaged: {}", frame, again);
+    const int format = bytes[name], own_format = record_magic.back();
+    if (format != own_format)
+        return fmt::format(
+            "its frames are in format {}, by unravel {}, and this is unravel {}, of format {}: "
+            "draw it with the version that made it, or simulate it again with "
+            "`unravel run SCENE --force`",
+            format, version_of_run(folder), version(), own_format);
+    std::uint64_t made_from = 0;
+    std::memcpy(&made_from, bytes.data() + record_magic.size(), sizeof made_from);
+    if (made_from == scene_hash) return fmt::format("frame {} is damaged: {}", frame, again);
+    if (made_from == unravel::scene_hash(load_scene(folder.scene())))
+        return "what --set changes is not only how the scene looks: that needs a run of its own, "
+               "`unravel run SCENE --set ... -o DIR`";
+    return fmt::format(
+        "its frames, by unravel {}, are of another scene than its scene.toml is to this unravel {}: "
+        "scene.toml was changed since, or that version understood it differently; draw it with the "
+        "version that made it, or simulate it again with `unravel run SCENE --force`",
+        version_of_run(folder), version());
 }
 
 }  // namespace unravel

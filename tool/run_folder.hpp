@@ -54,6 +54,11 @@ void copy_named_files(const std::filesystem::path& folder, const Scene& scene,
 int cached_frames(const RunFolder& folder, const Scene& scene, std::uint64_t scene_hash,
                   std::size_t particles, std::size_t springs);
 
+/// Why a frame of the cache cannot be used, and what to do: nobody wrote it, another version of the tool did,
+/// it is damaged, or the scene asked for differs from the run's in more than its picture. For a frame that
+/// cached_frames() did not count.
+std::string why_unusable(const RunFolder& folder, int frame, std::uint64_t scene_hash);
+
 /// Hash of the scene as run. Only what changes the simulation counts.
 std::uint64_t scene_hash(const Scene& scene);
 
