@@ -50,9 +50,9 @@ struct SolidMesh {
     float radius = 0.3f, height = 1.0f, round = 0.0f;  ///< m; cylinders and capsules stand along y, capsules'
                                                        ///< height is between the centres of their caps
     Vec3f size{1, 1, 1};                               ///< box: full edge lengths [m]
-    std::vector<Vec3f> positions = {};                      ///< mesh: (vertices) in its own frame [m]
+    std::vector<Vec3f> positions = {};                 ///< mesh: (vertices) in its own frame [m]
     std::vector<std::array<std::uint32_t, 3>> triangles = {};  ///< mesh: counter-clockwise from outside
-    bool deforms = false;                                 ///< mesh: DrawFrame has its positions
+    bool deforms = false;                                      ///< mesh: DrawFrame has its positions
     Rgb color{201, 183, 156};
 };
 
@@ -81,8 +81,8 @@ struct DrawScene {
 
 /// What changes from frame to frame.
 struct DrawFrame {
-    std::vector<Vec3f> positions = {};      ///< (particles) [m]
-    std::vector<Rgb> particle_colors;  ///< (particles) component view: by component, white if constrained
+    std::vector<Vec3f> positions = {};  ///< (particles) [m]
+    std::vector<Rgb> particle_colors;   ///< (particles) component view: by component, white if constrained
     std::vector<std::uint8_t> edge_strength;  ///< (edges) 255 solid … 0 not drawn; empty: all solid
     std::vector<Rgb> edge_colors;  ///< (edges) colours of the wires; empty: those of the particles they join
     std::vector<Eigen::Isometry3f> solid_poses;  ///< (solids) shape's own frame to world
