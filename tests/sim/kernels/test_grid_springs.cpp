@@ -18,6 +18,14 @@ Cloth cloth_of(const char* name, int nu, int nv, bool tube) {
     return cloth;
 }
 
+Scene scene_of_all_shapes() {
+    Scene scene;
+    scene.cloths = {cloth_of("open", 6, 4, false),   cloth_of("tube", 7, 3, true),
+                    cloth_of("ribbon", 1, 9, false), cloth_of("row", 5, 1, false),
+                    cloth_of("ring", 3, 2, true),    cloth_of("point", 1, 1, false)};
+    return scene;
+}
+
 // Springs of `rows` that the lists place elsewhere.
 template <typename Springs>
 int misplaced(const GridSprings& grid, const SpringRows& rows, const Springs& springs) {
@@ -38,10 +46,7 @@ int misplaced(const GridSprings& grid, const SpringRows& rows, const Springs& sp
 }  // namespace
 
 TEST_CASE("every spring of a grid stands where its stencil says, and there is no other") {
-    Scene scene;
-    scene.cloths = {cloth_of("open", 6, 4, false),   cloth_of("tube", 7, 3, true),
-                    cloth_of("ribbon", 1, 9, false), cloth_of("row", 5, 1, false),
-                    cloth_of("ring", 3, 2, true),    cloth_of("point", 1, 1, false)};
+    const Scene scene = scene_of_all_shapes();
     Placement placement;
     const ClothModel model = build_model(scene, placement);
     REQUIRE(model.grids.size() == scene.cloths.size());
@@ -71,10 +76,7 @@ TEST_CASE("every spring of a grid stands where its stencil says, and there is no
 }
 
 TEST_CASE("a stencil finds the springs of a particle that lists name, in the same order") {
-    Scene scene;
-    scene.cloths = {cloth_of("open", 6, 4, false),   cloth_of("tube", 7, 3, true),
-                    cloth_of("ribbon", 1, 9, false), cloth_of("row", 5, 1, false),
-                    cloth_of("ring", 3, 2, true),    cloth_of("point", 1, 1, false)};
+    const Scene scene = scene_of_all_shapes();
     Placement placement;
     const ClothModel model = build_model(scene, placement);
     REQUIRE(!model.spring_adjacency.grids.empty());
