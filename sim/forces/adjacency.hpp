@@ -20,7 +20,6 @@ struct Adjacency {
     std::vector<Entry> entries;        ///< (2 × springs) each particle's sorted by spring
     std::vector<GridSprings> grids;    ///< sorted by particle; none: by lists
 
-    bool empty() const { return start.empty() && grids.empty(); }
     std::size_t bytes() const {
         return start.size() * sizeof(std::uint32_t) + entries.size() * sizeof(Entry) +
                grids.size() * sizeof(GridSprings);

@@ -42,7 +42,7 @@ public:
     void apply(std::span<const Vec3> r, std::span<Vec3> z);
 
 private:
-    using Fine = AggregationLevel<SpringBlock>;
+    using Fine = AggregationLevel<RankOneBlock>;
     using Coarse = AggregationLevel<Block3>;
     void place(const System& A, const Components& components, std::size_t c, const Aggregates& aggregates);
     void load(const System& A, std::span<const Constraint* const> constraint);

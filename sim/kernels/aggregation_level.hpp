@@ -35,9 +35,9 @@ struct Block3 {
     Block3 block() const { return *this; }
 };
 
-/// A spring's block B = a I + w wᵀ: w, and a in the fourth lane. times() leaves a fourth lane without a
+/// A spring's block B = a I + w wᵀ in one machine vector: w, and a in the fourth lane. times() leaves a fourth lane without a
 /// meaning.
-struct SpringBlock {
+struct RankOneBlock {
     Float4 wa;
     Float4 times(const Float4& v) const { return wa * (wa * v).sum() + wa[3] * v; }
     Float4 w() const { return {wa[0], wa[1], wa[2], 0.0f}; }
