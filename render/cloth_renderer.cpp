@@ -47,6 +47,32 @@ std::vector<std::uint32_t> pieces_of(const ClothMesh& mesh) {
     return parent;
 }
 
+/// Between neighbouring vertices, where cells are square [m].
+float vertex_gap(const ClothMesh& mesh) {
+    float twice_area = 0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Vec2f p = mesh.uv[b] - mesh.uv[a], q = mesh.uv[c] - mesh.uv[a];
+        twice_area += std::abs(p.x() * q.y() - p.y() * q.x());
+    }
+    return std::sqrt(twice_area / static_cast<float>(std::max<std::size_t>(mesh.triangles.size(), 1)));
+}
+
+/// Cells along the side of a block of triangles.
+constexpr float block_cells = 13;
+
+/// The mesh's triangles, block after block of the flat cloth. Renderers take triangles by batches and work
+/// out each vertex once for a batch: rows of a wide cloth share less than blocks do.
+std::vector<std::array<std::uint32_t, 3>> in_blocks(const ClothMesh& mesh) {
+    const float side = std::max(block_cells * vertex_gap(mesh), 1e-6f);
+    const auto block = [&](const std::array<std::uint32_t, 3>& corners) {
+        const Vec2f middle = (mesh.uv[corners[0]] + mesh.uv[corners[1]] + mesh.uv[corners[2]]) / 3;
+        return std::pair(std::floor(middle.y() / side), std::floor(middle.x() / side));
+    };
+    std::vector<std::array<std::uint32_t, 3>> triangles = mesh.triangles;
+    std::ranges::stable_sort(triangles, {}, block);
+    return triangles;
+}
+
 /// Triangles between a few of the mesh's vertices: each cell of a grid over the flat cloth, `cells` along its
 /// longer side, is stood for by its first vertex, piece by piece.
 std::vector<std::uint32_t> coarsen(const ClothMesh& mesh, float cells) {
@@ -92,16 +118,6 @@ Vec3f mean_of(const Image& image) {
     return sum / static_cast<float>(std::max(image.width * image.height, 1));
 }
 
-/// Between neighbouring vertices, where cells are square [m].
-float vertex_gap(const ClothMesh& mesh) {
-    float twice_area = 0;
-    for (const auto& [a, b, c] : mesh.triangles) {
-        const Vec2f p = mesh.uv[b] - mesh.uv[a], q = mesh.uv[c] - mesh.uv[a];
-        twice_area += std::abs(p.x() * q.y() - p.y() * q.x());
-    }
-    return std::sqrt(twice_area / static_cast<float>(std::max<std::size_t>(mesh.triangles.size(), 1)));
-}
-
 // Pixels a thread from which on it is seen; see weave.glsl.
 constexpr float least_thread = 1 / 0.6f;
 
@@ -113,14 +129,16 @@ float thread_of(const ClothAppearance& look) {
 }
 
 /// `threads`: some may be large enough to be seen.
-GlProgram fabric_program(const ClothMesh& mesh, bool software, bool threads) {
+GlProgram fabric_program(const ClothMesh& mesh, bool software, bool encoded, bool threads) {
     const ClothAppearance& look = mesh.appearance;
     const std::string defines = fmt::format(
-        "#define WEAVE {}\n#define PICTURE {}\n#define LIGHT_AT_VERTICES {}\n#define THREADS {}\n",
+        "#define WEAVE {}\n#define PICTURE {}\n#define LIGHT_AT_VERTICES {}\n#define THREADS {}\n#define "
+        "ENCODED {}\n",
         static_cast<int>(look.weave), mesh.texture.pixels.empty() ? 0 : 1,
-        software && mesh.triangles.size() > fine_mesh ? 1 : 0, threads ? 1 : 0);
+        software && mesh.triangles.size() > fine_mesh ? 1 : 0, threads ? 1 : 0, encoded ? 1 : 0);
     GlProgram program({"frame.glsl", "light.glsl", "sky.glsl", "fabric.glsl", "cloth.vert"},
-                      {"frame.glsl", "light.glsl", "pattern.glsl", "fabric.glsl", "weave.glsl", "cloth.frag"},
+                      {"frame.glsl", "light.glsl", "pattern.glsl", "fabric.glsl", "weave.glsl", "color.glsl",
+                       "written.glsl", "cloth.frag"},
                       defines);
     ShadowMaps::connect(program);
     program.sampler("picture", 0);
@@ -140,16 +158,16 @@ GlProgram fabric_program(const ClothMesh& mesh, bool software, bool threads) {
 
 }  // namespace
 
-ClothRenderer::Cloth::Cloth(const ClothMesh& of, bool software)
+ClothRenderer::Cloth::Cloth(const ClothMesh& of, bool software, bool encoded)
     : mesh(&of),
-      near(fabric_program(of, software, true)),
-      far(fabric_program(of, software, false)),
+      near(fabric_program(of, software, encoded, true)),
+      far(fabric_program(of, software, encoded, false)),
       thread(thread_of(of.appearance)) {}
 
-ClothRenderer::ClothRenderer(const DrawScene& scene, bool software) {
+ClothRenderer::ClothRenderer(const DrawScene& scene, bool software, bool encoded) {
     std::size_t most = 0, particles = 0;
     for (const ClothMesh& mesh : scene.cloths) {
-        Cloth& cloth = cloths_.emplace_back(mesh, software);
+        Cloth& cloth = cloths_.emplace_back(mesh, software, encoded);
         const std::size_t count = mesh.particle.size();
         most = std::max(most, count);
         for (const std::uint32_t p : mesh.particle) particles = std::max<std::size_t>(particles, p + 1);
@@ -163,7 +181,7 @@ ClothRenderer::ClothRenderer(const DrawScene& scene, bool software) {
         allocate_buffer(GL_ARRAY_BUFFER, cloth.colors, count * 4);
         glEnableVertexAttribArray(3);
         glVertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, 4, nullptr);
-        fill_buffer(GL_ELEMENT_ARRAY_BUFFER, cloth.indices, mesh.triangles);
+        fill_buffer(GL_ELEMENT_ARRAY_BUFFER, cloth.indices, in_blocks(mesh));
         // A GPU draws all triangles faster than it is told to draw fewer.
         make_outline(cloth, software ? 64 : 1e6f, cloth.casters);
         make_outline(cloth, 28, cloth.coarse);

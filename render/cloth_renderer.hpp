@@ -12,7 +12,8 @@ namespace unravel {
 class ClothRenderer {
 public:
     /// `software`: the renderer pays for each pixel; fine meshes then get their light at vertices.
-    ClothRenderer(const DrawScene& scene, bool software);
+    /// `encoded`: shaders write sRGB.
+    ClothRenderer(const DrawScene& scene, bool software, bool encoded);
 
     /// New positions and smooth normals.
     void update_shape(const DrawFrame& frame);
@@ -49,7 +50,7 @@ private:
         Outline casters, coarse;
         GlTexture texture;
 
-        Cloth(const ClothMesh& of, bool software);
+        Cloth(const ClothMesh& of, bool software, bool encoded);
     };
     void draw_triangles(const Cloth& cloth) const;
     static void make_outline(const Cloth& cloth, float cells, Outline& outline);

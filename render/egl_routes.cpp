@@ -62,11 +62,17 @@ std::string CurrentContext::version() const {
 }
 
 int CurrentContext::max_samples() const {
-    constexpr GLenum name = 0x8D57;  // GL_MAX_SAMPLES, younger than GL/gl.h
+    // GL_MAX_SAMPLES, GL_MAX_COLOR_TEXTURE_SAMPLES, GL_MAX_DEPTH_TEXTURE_SAMPLES: younger than GL/gl.h.
+    constexpr GLenum limits[] = {0x8D57, 0x910E, 0x910F};
     const auto get = reinterpret_cast<decltype(&::glGetIntegerv)>(egl_.GetProcAddress("glGetIntegerv"));
-    GLint samples = 1;
-    if (get) get(name, &samples);
-    return samples;
+    if (!get) return 1;
+    GLint least = 64;
+    for (const GLenum limit : limits) {
+        GLint samples = 1;
+        get(limit, &samples);
+        least = std::min(least, samples);
+    }
+    return std::max(least, 1);
 }
 
 std::vector<Route> list_routes(const Egl& egl, std::vector<RendererAttempt>& attempts) {

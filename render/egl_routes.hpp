@@ -27,7 +27,7 @@ public:
 
     std::string renderer() const;  ///< GL_RENDERER
     std::string version() const;   ///< GL_VERSION
-    int max_samples() const;       ///< GL_MAX_SAMPLES
+    int max_samples() const;       ///< of a picture that shaders read
 
 private:
     Egl egl_;

@@ -38,7 +38,7 @@ Eigen::Array2f shadow_of(const Vec3f& p, const Vec3f& key, float level) {
 
 }  // namespace
 
-Ground::Ground(const DrawScene& scene, float reach, int map_size)
+Ground::Ground(const DrawScene& scene, float reach, int map_size, bool encoded)
     : scene_(&scene),
       key_(scene.key_direction.normalized()),
       centre_(0.5f * (scene.bounds_low + scene.bounds_high)),
@@ -46,8 +46,8 @@ Ground::Ground(const DrawScene& scene, float reach, int map_size)
       open_({"map.vert"}, {"frame.glsl", "light.glsl", "ground_open.frag"}),
       visible_({"map.vert"}, {"frame.glsl", "light.glsl", "pattern.glsl", "ground_visible.frag"}),
       soft_({"map.vert"}, {"ground_soft.frag"}),
-      shown_({"frame.glsl", "light.glsl", "ground.vert"}, {"ground.frag"},
-             fmt::format("#define GRID {}\n", cells)),
+      shown_({"frame.glsl", "light.glsl", "ground.vert"}, {"color.glsl", "written.glsl", "ground.frag"},
+             fmt::format("#define GRID {}\n#define ENCODED {}\n", cells, encoded ? 1 : 0)),
       quiet_({"frame.glsl", "ground_quiet.vert"}, {"frame.glsl", "ground_quiet.frag"}) {
     // The map holds the scene's surroundings and the shadow of the sphere around it.
     const float radius = 0.5f * (scene.bounds_high - scene.bounds_low).norm();
@@ -158,16 +158,13 @@ void Ground::light(const DrawFrame& frame, const ShadowMaps& shadows) const {
     glDisable(GL_SCISSOR_TEST);
 }
 
-void Ground::draw_square() const {
-    glBindVertexArray(square_);
-    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-}
-
 void Ground::draw(DrawStyle style, const Vec3f& eye) const {
     if (!seen_from(eye)) return;
     if (style == DrawStyle::components) {
         quiet_.use();
-        return draw_square();
+        glBindVertexArray(square_);
+        glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+        return;
     }
     glActiveTexture(GL_TEXTURE0 + first_unit);
     glBindTexture(GL_TEXTURE_2D, open_map_);
@@ -176,10 +173,6 @@ void Ground::draw(DrawStyle style, const Vec3f& eye) const {
     shown_.use();
     glBindVertexArray(grid_);
     glDrawElements(GL_TRIANGLES, 6 * cells * cells, GL_UNSIGNED_SHORT, nullptr);
-}
-
-void Ground::draw_depth(const Vec3f& eye) const {
-    if (seen_from(eye)) draw_square();
 }
 
 }  // namespace unravel

@@ -13,14 +13,13 @@ namespace unravel {
 class Ground {
 public:
     /// `reach`: how far it goes from the scene's centre [m]; `map_size`: texels along the map's longer side.
-    Ground(const DrawScene& scene, float reach, int map_size);
+    /// `encoded`: shaders write sRGB.
+    Ground(const DrawScene& scene, float reach, int map_size, bool encoded);
 
     /// Lights the map by this frame's shadow maps, which are to be bound.
     void light(const DrawFrame& frame, const ShadowMaps& shadows) const;
-    /// Draws into the backdrop: lit, or as a faint patch for the component view.
+    /// Draws it: lit, or as a faint patch for the component view.
     void draw(DrawStyle style, const Vec3f& eye) const;
-    /// Its depth alone, by the program in use, whose matrix is `transform`: hides what lies under it.
-    void draw_depth(const Vec3f& eye) const;
 
 private:
     static constexpr int open_size = 48;  ///< openness to the sky varies slowly
@@ -30,13 +29,13 @@ private:
 
     bool seen_from(const Vec3f& eye) const { return scene_->show_ground && eye.y() > scene_->ground_height; }
     PixelRect shadow_rect(const DrawFrame& frame) const;
-    void draw_square() const;
 
     const DrawScene* scene_;
     Vec3f key_, centre_;
     float reach_;
     Eigen::Array2f low_, extent_;  ///< x and z of the map's corner, and its size [m]
     int width_, height_;           ///< of the map [px]
+    PixelRect shade_;              ///< of the map: outside it nothing casts a shadow
     GlProgram open_, visible_, soft_, shown_, quiet_;
     GlTexture open_map_, visible_map_, soft_map_;
     GlFramebuffer open_target_, visible_target_, soft_target_;

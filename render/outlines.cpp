@@ -1,5 +1,7 @@
 #include "render/outlines.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -54,10 +56,10 @@ Outlines::Surface Outlines::surface_of(const SolidMesh& solid, int index) {
     return surface;
 }
 
-Outlines::Outlines(const DrawScene& scene)
+Outlines::Outlines(const DrawScene& scene, bool encoded)
     : scene_(&scene),
-      smooth_({"frame.glsl", "outline.vert"}, {"outline.frag"}),
-      corner_(smooth_.uniform("corner")) {
+      smooth_({"frame.glsl", "outline.vert"}, {"outline.frag"},
+              fmt::format("#define ENCODED {}\n", encoded ? 1 : 0)) {
     for (const ClothMesh& mesh : scene.cloths) {
         Surface& surface = surfaces_.emplace_back();
         for (const auto& [a, b, c] : mesh.triangles)
@@ -80,7 +82,7 @@ Outlines::Outlines(const DrawScene& scene)
     glBindVertexArray(vertex_array_);
     fill_buffer(GL_ELEMENT_ARRAY_BUFFER, quads_, quad_indices(edges));
     glBindVertexArray(0);
-    smooth_.sampler("layer", 0);
+    smooth_.sampler("picture", 0);
     smooth_.sampler("depth", 1);
     smooth_.sampler("ends", 2);
 }
@@ -113,14 +115,12 @@ void Outlines::update(const DrawFrame& frame) {
     count_ /= 2;
 }
 
-void Outlines::draw(const Framebuffer& framebuffer) const {
-    if (count_ == 0) return;
-    framebuffer.begin_outlines();
+void Outlines::draw(const Framebuffer& framebuffer, const PixelRect& rect) const {
+    if (count_ == 0 || rect.empty()) return;
+    framebuffer.begin_outlines(rect);
     glActiveTexture(GL_TEXTURE2);
     glBindTexture(GL_TEXTURE_BUFFER, points_table_);
     smooth_.use();
-    const PixelRect rect = framebuffer.layer_rect();
-    glUniform2f(corner_, static_cast<float>(rect.x), static_cast<float>(rect.y));
     glBindVertexArray(vertex_array_);
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * count_), GL_UNSIGNED_INT, nullptr);
 }

@@ -14,12 +14,13 @@ namespace unravel {
 /// [Persson 2011, Geometric post-process anti-aliasing]
 class Outlines {
 public:
-    explicit Outlines(const DrawScene& scene);
+    /// `encoded`: the picture is read and written as sRGB.
+    Outlines(const DrawScene& scene, bool encoded);
 
     /// Finds the frame's outlines.
     void update(const DrawFrame& frame);
-    /// Smooths them in a layer that holds square roots of colours.
-    void draw(const Framebuffer& framebuffer) const;
+    /// Smooths them, all within `rect` of the picture.
+    void draw(const Framebuffer& framebuffer, const PixelRect& rect) const;
 
 private:
     struct Edge {
@@ -48,7 +49,6 @@ private:
     GlTexture points_table_;
     GlVertexArray vertex_array_;
     GlProgram smooth_;
-    GLint corner_;
 };
 
 }  // namespace unravel

@@ -50,6 +50,11 @@ FrameBlock fixed_block(const DrawScene& scene, const ShadowMaps& shadows, float 
     return block;
 }
 
+/// Whether shaders encode as sRGB what they write; not where alpha is kept, which is of linear light.
+bool encodes(const GlContext& context, const DrawScene& scene) {
+    return context.software() && !scene.transparent;
+}
+
 /// Samples where none are asked: on the CPU each costs as much again as the first, and outlines are smoothed.
 int samples_for(const GlContext& context, const RenderSettings& asked) {
     return asked.samples > 0 ? asked.samples : context.software() ? 1 : 4;
@@ -62,8 +67,7 @@ struct Renderer::Parts {
     RenderSettings settings;
     std::string renderer;
     Framebuffer framebuffer;  ///< of the textured view
-    // Wires cover pixels by as much as they should without more samples; on the CPU each sample costs as much
-    // again as the first.
+    // Wires cover pixels by as much as they should without more samples, and are blended in linear light.
     Framebuffer wire_framebuffer;
     Readback readback;
     SolidRenderer solids;
@@ -87,17 +91,18 @@ struct Renderer::Parts {
           settings(asked),
           renderer(context.renderer()),
           framebuffer(context, {asked.width, asked.height, samples_for(context, asked), asked.supersample,
-                                asked.exposures, draw_scene.transparent, true, asked.samples == 0}),
+                                asked.exposures, draw_scene.transparent, encodes(context, draw_scene),
+                                asked.samples == 0}),
           wire_framebuffer(context,
                            {asked.width, asked.height, context.software() ? 1 : samples_for(context, asked),
                             asked.supersample, asked.exposures, draw_scene.transparent, false, false}),
           readback(asked.width, asked.height),
-          solids(draw_scene),
+          solids(draw_scene, framebuffer.encoded()),
           shadows(draw_scene, context.software() ? 1024 : 2048),
-          cloths(draw_scene, context.software()),
+          cloths(draw_scene, context.software(), framebuffer.encoded()),
           wires(draw_scene),
-          ground(draw_scene, solids.reach(), context.software() ? 512 : 1024),
-          outlines(draw_scene),
+          ground(draw_scene, solids.reach(), context.software() ? 512 : 1024, framebuffer.encoded()),
+          outlines(draw_scene, framebuffer.encoded()),
           block(fixed_block(draw_scene, shadows, solids.reach())) {
         allocate_buffer(GL_UNIFORM_BUFFER, block_buffer, sizeof(FrameBlock));
         edges = draw_scene.edges.size();
@@ -110,15 +115,11 @@ struct Renderer::Parts {
     void draw_textured(DrawStyle style, const DrawFrame& frame, int exposure, int exposures);
     void draw_components(const DrawFrame& frame, int exposure, int exposures);
     float wire_gap(const DrawFrame& frame) const;
-    Framebuffer& target(DrawStyle style) {
-        return style == DrawStyle::components ? wire_framebuffer : framebuffer;
-    }
     Rgb background(DrawStyle style) const {
         return style == DrawStyle::components ? scene->components_background : scene->background;
     }
-    void draw_backdrop(DrawStyle style, const DrawFrame& frame);
-    bool below_ground(const DrawFrame& frame) const;
-    PixelRect begin_shapes(DrawStyle style, const DrawFrame& frame);
+    void draw_ground(DrawStyle style, const DrawFrame& frame) const;
+    PixelRect shapes_rect(const DrawFrame& frame) const;
     int height() const { return framebuffer.height() * framebuffer.supersample(); }
 };
 
@@ -153,37 +154,20 @@ void Renderer::Parts::update_block(DrawStyle style, const CameraView& view) {
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, block_buffer);
 }
 
-void Renderer::Parts::draw_backdrop(DrawStyle style, const DrawFrame& frame) {
-    target(style).begin_backdrop();
-    const Vec3f c = scene->transparent ? Vec3f(0, 0, 0) : linear(background(style));
-    glClearColor(c.x(), c.y(), c.z(), scene->transparent ? 0 : 1);
-    glClear(GL_COLOR_BUFFER_BIT);
-    if (!scene->transparent) ground.draw(style, frame.camera.position);
-}
-
-/// Whether any shape reaches below the ground, which then hides it.
-bool Renderer::Parts::below_ground(const DrawFrame& frame) const {
+/// Behind the shapes that are there already. Where any reaches below the ground, it hides what lies there.
+void Renderer::Parts::draw_ground(DrawStyle style, const DrawFrame& frame) const {
+    if (scene->transparent) return;
     bool below = false;
-    visit_bounds(*scene, frame, [&](const Vec3f& p) { below = below || p.y() < scene->ground_height; });
-    return below;
+    const auto look = [&](const Vec3f& p) { below = below || p.y() < scene->ground_height; };
+    visit_bounds(*scene, frame, std::ref(look));
+    if (!below) glDepthRange(1, 1);
+    ground.draw(style, frame.camera.position);
+    glDepthRange(0, 1);
 }
 
-/// Opens the layer where shapes will be, and puts the ground's depth there; tells where.
-PixelRect Renderer::Parts::begin_shapes(DrawStyle style, const DrawFrame& frame) {
-    // Wires and dots are drawn around their particles.
-    const int margin = static_cast<int>(2 * WireRenderer::line_width(height())) + 2;
-    const PixelRect rect =
-        solids.any_plane() ? framebuffer.whole()
-                           : covered_rect(*scene, frame, block.view_projection, framebuffer.whole(), margin);
-    if (rect.empty()) return rect;
-    target(style).begin_layer(rect);
-    if (scene->transparent || !below_ground(frame)) return rect;
-    depth.use();
-    glUniformMatrix4fv(depth_transform, 1, GL_FALSE, block.view_projection.data());
-    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    ground.draw_depth(frame.camera.position);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    return rect;
+/// Where there may be outlines.
+PixelRect Renderer::Parts::shapes_rect(const DrawFrame& frame) const {
+    return covered_rect(*scene, frame, block.view_projection, framebuffer.whole(), 2);
 }
 
 /// Pixels between neighbouring particles at the scene's centre.
@@ -197,7 +181,7 @@ void Renderer::Parts::draw_textured(DrawStyle style, const DrawFrame& frame, int
     solids.update_shapes(frame);
     shadows.draw([&](const Eigen::Matrix4f& transform, bool coarse) {
         depth.use();
-        solids.draw_shapes(frame, depth_transform, transform, coarse);
+        solids.draw_casters(frame, depth_transform, transform, coarse);
         glUniformMatrix4fv(depth_transform, 1, GL_FALSE, transform.data());
         if (coarse)
             cloths.draw_coarse();
@@ -205,22 +189,21 @@ void Renderer::Parts::draw_textured(DrawStyle style, const DrawFrame& frame, int
             cloths.draw_casters();
     });
     if (!scene->transparent) ground.light(frame, shadows);
-    draw_backdrop(style, frame);
-    const PixelRect rect = begin_shapes(style, frame);
-    if (!rect.empty()) {
-        shadows.bind();
-        cloths.draw_fabric(block.viewport.z());
-        solids.draw_shaded(frame);
-        if (style == DrawStyle::overlay) {
-            wires.update(frame);
-            wires.draw(height(), wire_gap(frame), true);
-        }
-        if (framebuffer.smooths_outlines()) {
-            outlines.update(frame);
-            outlines.draw(framebuffer);
-        }
+    framebuffer.begin(scene->background);
+    shadows.bind();
+    cloths.draw_fabric(block.viewport.z());
+    solids.draw_shaded(frame);
+    draw_ground(style, frame);
+    solids.draw_planes(frame);
+    if (style == DrawStyle::overlay) {
+        wires.update(frame);
+        wires.draw(height(), wire_gap(frame), framebuffer.encoded());
     }
-    framebuffer.finish(rect, exposure, exposures);
+    if (framebuffer.smooths_outlines()) {
+        outlines.update(frame);
+        outlines.draw(framebuffer, shapes_rect(frame));
+    }
+    framebuffer.finish(exposure, exposures);
 }
 
 void Renderer::Parts::draw_components(const DrawFrame& frame, int exposure, int exposures) {
@@ -229,9 +212,7 @@ void Renderer::Parts::draw_components(const DrawFrame& frame, int exposure, int 
     cloths.update_colors(frame);
     wires.update(frame);
     const float gap = wire_gap(frame);
-    draw_backdrop(DrawStyle::components, frame);
-    const PixelRect rect = begin_shapes(DrawStyle::components, frame);
-    if (rect.empty()) return wire_framebuffer.finish(rect, exposure, exposures);
+    wire_framebuffer.begin(scene->components_background);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1, 1);
     sheet.use();
@@ -241,8 +222,11 @@ void Renderer::Parts::draw_components(const DrawFrame& frame, int exposure, int 
     surface.use();
     solids.draw_quiet(frame, surface_uniforms);
     glDisable(GL_POLYGON_OFFSET_FILL);
+    draw_ground(DrawStyle::components, frame);
+    surface.use();
+    solids.draw_quiet_planes(frame, surface_uniforms);
     wires.draw(height(), gap, false);
-    wire_framebuffer.finish(rect, exposure, exposures);
+    wire_framebuffer.finish(exposure, exposures);
 }
 
 Renderer::Renderer(const GlContext& context, const DrawScene& scene, RenderSettings settings)

@@ -14,10 +14,10 @@ constexpr float quiet_ground = 0.3f;
 
 }  // namespace
 
-SolidRenderer::Shaded::Shaded(bool fades)
+SolidRenderer::Shaded::Shaded(bool fades, bool encoded)
     : program({"frame.glsl", "light.glsl", "sky.glsl", "yield.glsl", "solid.vert"},
-              {"frame.glsl", "light.glsl", "pattern.glsl", "solid.frag"},
-              fmt::format("#define FADES {}\n", fades ? 1 : 0)),
+              {"frame.glsl", "light.glsl", "pattern.glsl", "color.glsl", "written.glsl", "solid.frag"},
+              fmt::format("#define FADES {}\n#define ENCODED {}\n", fades ? 1 : 0, encoded ? 1 : 0)),
       model(program.uniform("model")),
       albedo(program.uniform("albedo")),
       gloss(program.uniform("gloss")),
@@ -25,19 +25,18 @@ SolidRenderer::Shaded::Shaded(bool fades)
     ShadowMaps::connect(program);
 }
 
-SolidRenderer::SolidRenderer(const DrawScene& scene)
+SolidRenderer::SolidRenderer(const DrawScene& scene, bool encoded)
     : scene_(&scene),
       centre_(0.5f * (scene.bounds_low + scene.bounds_high)),
       reach_(2.5f * (scene.bounds_high - scene.bounds_low).norm()),
-      shaded_(false),
-      fading_(true) {
+      shaded_(false, encoded),
+      fading_(true, encoded) {
     for (std::size_t i = 0; i < scene.solids.size(); ++i) {
         const SolidMesh& solid = scene.solids[i];
         if (solid.shape != SolidShape::plane)
             parts_.push_back({Mesh(tessellate(solid)), Mesh(tessellate(solid, 0.4f)), static_cast<int>(i),
                               false, linear(solid.color)});
     }
-    // Planes come last: where they fade, what stands behind them is to be seen.
     for (std::size_t i = 0; i < scene.solids.size(); ++i)
         if (scene.solids[i].shape == SolidShape::plane)
             parts_.push_back({Mesh(tessellate_ground(reach_)), Mesh({}), static_cast<int>(i), true,
@@ -99,8 +98,8 @@ Eigen::Matrix4f SolidRenderer::pose(const Part& part, const DrawFrame& frame) co
     return pose.matrix();
 }
 
-void SolidRenderer::draw_shapes(const DrawFrame& frame, GLint transform_uniform,
-                                const Eigen::Matrix4f& transform, bool coarse) const {
+void SolidRenderer::draw_casters(const DrawFrame& frame, GLint transform_uniform,
+                                 const Eigen::Matrix4f& transform, bool coarse) const {
     for (const Part& part : parts_) {
         if (part.fades) continue;  // nothing lies below a plane
         const Eigen::Matrix4f matrix = transform * pose(part, frame);
@@ -109,42 +108,61 @@ void SolidRenderer::draw_shapes(const DrawFrame& frame, GLint transform_uniform,
     }
 }
 
+void SolidRenderer::draw_shaded(const Part& part, const DrawFrame& frame) const {
+    const Eigen::Matrix4f matrix = pose(part, frame);
+    const Vec3f middle = matrix.block<3, 1>(0, 3);
+    const Shaded& shaded = part.fades ? fading_ : shaded_;
+    shaded.program.use();
+    glUniformMatrix4fv(shaded.model, 1, GL_FALSE, matrix.data());
+    glUniform3fv(shaded.albedo, 1, part.albedo.data());
+    glUniform1f(shaded.gloss, part.fades ? 0.15f : 1.f);
+    glUniform3fv(shaded.fade_centre, 1, middle.data());
+    part.fine.draw();
+}
+
 void SolidRenderer::draw_shaded(const DrawFrame& frame) const {
     glEnable(GL_CULL_FACE);
+    for (const Part& part : parts_)
+        if (!part.fades) draw_shaded(part, frame);
+    glDisable(GL_CULL_FACE);
+}
+
+void SolidRenderer::draw_planes(const DrawFrame& frame) const {
+    glEnable(GL_CULL_FACE);
+    glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    for (const Part& part : parts_) {
-        const Eigen::Matrix4f matrix = pose(part, frame);
-        const Vec3f middle = matrix.block<3, 1>(0, 3);
-        const Shaded& shaded = part.fades ? fading_ : shaded_;
-        shaded.program.use();
-        glUniformMatrix4fv(shaded.model, 1, GL_FALSE, matrix.data());
-        glUniform3fv(shaded.albedo, 1, part.albedo.data());
-        glUniform1f(shaded.gloss, part.fades ? 0.15f : 1.f);
-        glUniform3fv(shaded.fade_centre, 1, middle.data());
-        if (part.fades) glEnable(GL_BLEND);
-        part.fine.draw();
-    }
+    for (const Part& part : parts_)
+        if (part.fades) draw_shaded(part, frame);
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
 }
 
+void SolidRenderer::draw_quiet(const Part& part, const DrawFrame& frame,
+                               const SurfaceUniforms& uniforms) const {
+    Eigen::Matrix4f matrix = pose(part, frame);
+    const Vec3f middle = matrix.block<3, 1>(0, 3);
+    // Tones of the background that stay behind the wires.
+    const Vec3f background = linear(scene_->components_background);
+    const Vec3f tint =
+        part.fades ? Vec3f(2.2f * background) : Vec3f(3.5f * background + Vec3f::Constant(0.04f));
+    if (part.fades) matrix.block<3, 3>(0, 0) *= quiet_ground;
+    glUniformMatrix4fv(uniforms.model, 1, GL_FALSE, matrix.data());
+    glUniform3fv(uniforms.tint, 1, tint.data());
+    glUniform1i(uniforms.fades, part.fades);
+    glUniform3fv(uniforms.fade_centre, 1, middle.data());
+    part.fine.draw();
+}
+
 void SolidRenderer::draw_quiet(const DrawFrame& frame, const SurfaceUniforms& uniforms) const {
+    for (const Part& part : parts_)
+        if (!part.fades) draw_quiet(part, frame, uniforms);
+}
+
+void SolidRenderer::draw_quiet_planes(const DrawFrame& frame, const SurfaceUniforms& uniforms) const {
+    glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    for (const Part& part : parts_) {
-        Eigen::Matrix4f matrix = pose(part, frame);
-        const Vec3f middle = matrix.block<3, 1>(0, 3);
-        // Tones of the background that stay behind the wires.
-        const Vec3f background = linear(scene_->components_background);
-        const Vec3f tint =
-            part.fades ? Vec3f(2.2f * background) : Vec3f(3.5f * background + Vec3f::Constant(0.04f));
-        if (part.fades) matrix.block<3, 3>(0, 0) *= quiet_ground;
-        glUniformMatrix4fv(uniforms.model, 1, GL_FALSE, matrix.data());
-        glUniform3fv(uniforms.tint, 1, tint.data());
-        glUniform1i(uniforms.fades, part.fades);
-        glUniform3fv(uniforms.fade_centre, 1, middle.data());
-        if (part.fades) glEnable(GL_BLEND);
-        part.fine.draw();
-    }
+    for (const Part& part : parts_)
+        if (part.fades) draw_quiet(part, frame, uniforms);
     glDisable(GL_BLEND);
 }
 

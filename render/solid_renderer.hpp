@@ -11,25 +11,29 @@ namespace unravel {
 /// Solids. Planes fade away with distance from the scene.
 class SolidRenderer {
 public:
-    explicit SolidRenderer(const DrawScene& scene);
+    /// `encoded`: shaders write sRGB.
+    SolidRenderer(const DrawScene& scene, bool encoded);
 
     /// Uploads the frame's positions of meshes that deform. Before anything else of the frame is drawn.
     void update_shapes(const DrawFrame& frame);
 
     /// How far planes go from the scene's centre [m].
     float reach() const { return reach_; }
-    bool any_plane() const { return !parts_.empty() && parts_.back().fades; }
 
     /// What casts shadows, by the program in use, whose matrix `transform` is set for each. `coarse`: for
     /// small maps.
-    void draw_shapes(const DrawFrame& frame, GLint transform_uniform, const Eigen::Matrix4f& transform,
-                     bool coarse) const;
+    void draw_casters(const DrawFrame& frame, GLint transform_uniform, const Eigen::Matrix4f& transform,
+                      bool coarse) const;
+    /// All but planes.
     void draw_shaded(const DrawFrame& frame) const;
-    /// The component view's quiet version, by the program in use.
+    /// Planes, over what is behind them already: where they fade, that is to be seen.
+    void draw_planes(const DrawFrame& frame) const;
+    /// The component view's quiet versions of both, by the program in use.
     struct SurfaceUniforms {
         GLint model, tint, fades, fade_centre;
     };
     void draw_quiet(const DrawFrame& frame, const SurfaceUniforms& uniforms) const;
+    void draw_quiet_planes(const DrawFrame& frame, const SurfaceUniforms& uniforms) const;
 
 private:
     struct Mesh {
@@ -48,6 +52,8 @@ private:
         Vec3f albedo;  ///< linear
     };
     Eigen::Matrix4f pose(const Part& part, const DrawFrame& frame) const;
+    void draw_shaded(const Part& part, const DrawFrame& frame) const;
+    void draw_quiet(const Part& part, const DrawFrame& frame, const SurfaceUniforms& uniforms) const;
 
     const DrawScene* scene_;
     Vec3f centre_;
@@ -58,7 +64,7 @@ private:
         GlProgram program;
         GLint model, albedo, gloss, fade_centre;
 
-        explicit Shaded(bool fades);
+        Shaded(bool fades, bool encoded);
     };
     Shaded shaded_, fading_;
 };

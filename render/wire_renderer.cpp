@@ -19,14 +19,14 @@ void WireRenderer::make_table(const Table& table, GLenum format, std::size_t byt
 
 WireRenderer::WireRenderer(const DrawScene& scene)
     : spacing_(scene.spacing),
-      wire_({"frame.glsl", "color.glsl", "wire.vert"}, {"wire.frag"}),
-      dot_({"frame.glsl", "color.glsl", "dot.vert"}, {"dot.frag"}),
+      wire_({"frame.glsl", "color.glsl", "wire.vert"}, {"color.glsl", "wire.frag"}),
+      dot_({"frame.glsl", "color.glsl", "dot.vert"}, {"color.glsl", "dot.frag"}),
       width_(wire_.uniform("width")),
       wire_spacing_(wire_.uniform("spacing")),
       own_colors_(wire_.uniform("own_colors")),
-      wire_roots_(wire_.uniform("roots")),
+      wire_encoded_(wire_.uniform("encodes")),
       radius_(dot_.uniform("radius")),
-      dot_roots_(dot_.uniform("roots")) {
+      dot_encoded_(dot_.uniform("encodes")) {
     // Display vertices between particles are no ends of springs.
     for (const auto& [a, b] : scene.edges) particles_ = std::max<std::size_t>(particles_, std::max(a, b) + 1);
     edges_ = scene.edges.size();
@@ -79,7 +79,7 @@ void WireRenderer::bind_tables() const {
     }
 }
 
-void WireRenderer::draw(int height, float gap, bool roots) const {
+void WireRenderer::draw(int height, float gap, bool encoded) const {
     if (gap < invisible_gap) return;
     bind_tables();
     glBindVertexArray(vertex_array_);
@@ -90,7 +90,7 @@ void WireRenderer::draw(int height, float gap, bool roots) const {
     glUniform1f(width_, line_width(height));
     glUniform1f(wire_spacing_, spacing_);
     glUniform1i(own_colors_, by_edge_ ? 1 : 0);
-    glUniform1i(wire_roots_, roots ? 1 : 0);
+    glUniform1i(wire_encoded_, encoded ? 1 : 0);
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * edges_), GL_UNSIGNED_INT, nullptr);
 
     // Dots only where they leave the lines between them in sight.
@@ -98,7 +98,7 @@ void WireRenderer::draw(int height, float gap, bool roots) const {
     if (radius > 1.15f * line_width(height)) {
         dot_.use();
         glUniform1f(radius_, radius);
-        glUniform1i(dot_roots_, roots ? 1 : 0);
+        glUniform1i(dot_encoded_, encoded ? 1 : 0);
         glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * particles_), GL_UNSIGNED_INT, nullptr);
     }
     glDepthMask(GL_TRUE);

@@ -16,8 +16,8 @@ public:
     void update(const DrawFrame& frame);
     /// `height`: of the picture being drawn [px]; `gap`: pixels between neighbouring particles at the scene's
     /// centre. Nothing is drawn where springs are too dense to be told apart.
-    /// `roots`: the layer holds square roots.
-    void draw(int height, float gap, bool roots) const;
+    /// `encoded`: shaders write sRGB.
+    void draw(int height, float gap, bool encoded) const;
 
     /// Width of a line [px] in a picture of this height, where springs are not too dense for it.
     static float line_width(int height) { return 2.0f * static_cast<float>(height) / 720; }
@@ -41,7 +41,7 @@ private:
     GlVertexArray vertex_array_;
     GlBuffer quads_;
     GlProgram wire_, dot_;
-    GLint width_, wire_spacing_, own_colors_, wire_roots_, radius_, dot_roots_;
+    GLint width_, wire_spacing_, own_colors_, wire_encoded_, radius_, dot_encoded_;
 };
 
 }  // namespace unravel

@@ -48,5 +48,5 @@ void main() {
     FabricLight light = fabric_light(n, tilted(n, cloth.tilt), v, mean_albedo[gl_FrontFacing ? 0 : 1],
                                      gl_FrontFacing ? openness.x : openness.y, visible);
 #endif
-    color = vec4(sqrt(tone(cloth.albedo * light.diffuse + light.sheen)), 1.0);  // the layer holds roots
+    color = vec4(written(tone(cloth.albedo * light.diffuse + light.sheen)), 1.0);
 }

@@ -1,7 +1,7 @@
 uniform float radius;
 in vec2 within;
 flat in vec3 dot_color;
-uniform bool roots;  // the layer holds square roots
+uniform bool encodes;
 out vec4 color;
 
-void main() { color = vec4(roots ? sqrt(dot_color) : dot_color, 1.0) * clamp(radius + 0.5 - length(within), 0.0, 1.0); }
+void main() { color = vec4(encodes ? encoded(dot_color) : dot_color, 1.0) * clamp(radius + 0.5 - length(within), 0.0, 1.0); }

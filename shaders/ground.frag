@@ -5,4 +5,4 @@ in vec3 lit;
 in vec3 shadowed;
 out vec4 color;
 
-void main() { color = vec4(mix(shadowed, lit, texture(soft_map, at_map).r), 1.0); }
+void main() { color = vec4(written(mix(shadowed, lit, texture(soft_map, at_map).r)), 1.0); }

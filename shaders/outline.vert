@@ -1,6 +1,5 @@
 // One edge of an outline as a quad around it: four vertices an edge, found by their number.
 uniform samplerBuffer ends;  // place [m]; 1: of a solid
-uniform vec2 corner;         // of the layer in the picture [px]
 flat out vec4 line;          // both ends [px]
 flat out vec2 line_depth;    // at both ends
 
@@ -18,7 +17,7 @@ void main() {
     vec3 la = a.xyz + normalize(eye.xyz - a.xyz) * (viewport.w - a.w * shadow.w);
     vec3 lb = b.xyz + normalize(eye.xyz - b.xyz) * (viewport.w - b.w * shadow.w);
     vec4 da = view_projection * vec4(la, 1.0), db = view_projection * vec4(lb, 1.0);
-    line = vec4(pa, pb) - corner.xyxy;
+    line = vec4(pa, pb);
     line_depth = vec2(da.z / da.w, db.z / db.w) * 0.5 + 0.5;
     vec2 run = pb - pa;
     float length_px = length(run);

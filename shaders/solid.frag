@@ -22,5 +22,5 @@ void main() {
 #else
     const float fade = 0.0;
 #endif
-    color = vec4(sqrt(tone(result) * (1.0 - fade)), 1.0 - fade);  // the layer holds roots
+    color = vec4(written(tone(result)), 1.0) * (1.0 - fade);
 }

@@ -1,4 +1,4 @@
-// What lies between shading and the finished picture: outlines, alpha, exposures, the layer of shapes.
+// What lies between shading and the finished picture: outlines, alpha, exposures.
 #include <cmath>
 
 #include "render/color.hpp"
@@ -100,20 +100,57 @@ TEST_CASE("GL_smooth_outlines_come_as_near_to_the_finest_picture_as_samples_do")
     CHECK(smooth < 1.5 * samples);
 }
 
-TEST_CASE("GL_a_layer_that_has_grown_draws_what_a_fresh_one_draws") {
+TEST_CASE("GL_a_picture_keeps_nothing_of_the_one_before") {
     const auto context = testing::open_renderer();
     if (!context) return;
     testing::Sheet sheet(31);
-    Renderer grown(*context, sheet.scene, {.width = 640, .height = 360}),
+    Renderer used(*context, sheet.scene, {.width = 640, .height = 360}),
         fresh(*context, sheet.scene, {.width = 640, .height = 360});
     DrawFrame close = sheet.frame;
     close.camera.fov = 12;  // fills the picture
     Image a, b;
     for (const DrawStyle style : {DrawStyle::textured, DrawStyle::components, DrawStyle::overlay}) {
-        grown.draw(style, close, a);
-        grown.draw(style, sheet.frame, a);
+        used.draw(style, close, a);
+        used.draw(style, sheet.frame, a);
         fresh.draw(style, sheet.frame, b);
         CHECK(a.pixels == b.pixels);
+    }
+}
+
+TEST_CASE("GL_what_reaches_below_the_ground_is_hidden_by_it") {
+    const auto context = testing::open_renderer();
+    if (!context) return;
+    // A red ball whose middle lies on the ground: its lower half is not seen, in either view. A metre up, all
+    // is.
+    DrawScene scene = empty_scene({216, 222, 230});
+    scene.show_ground = true;
+    scene.solids.push_back({.shape = SolidShape::sphere, .radius = 0.5f, .color = {220, 20, 20}});
+    DrawFrame frame;
+    frame.camera = {.position = {0, 1, 5}, .target = {0, 0.5f, 0}, .up = {0, 1, 0}, .fov = 40};
+    for (const DrawStyle style : {DrawStyle::textured, DrawStyle::components}) {
+        Renderer renderer(*context, scene, {.width = 160, .height = 160});
+        std::array<int, 2> seen{};
+        for (const float height : {0.f, 1.f}) {
+            Image with, without;
+            frame.solid_poses = {Eigen::Isometry3f::Identity()};
+            frame.solid_poses[0].translation() = Vec3f(0, height, 0);
+            renderer.draw(style, frame, with);
+            frame.solid_poses[0].translation() = Vec3f(0, -5, 0);
+            renderer.draw(style, frame, without);
+            // Beside its shadow: only what is drawn in its own place changes in the column through its
+            // middle.
+            const auto differs = [&](int x, int y) {
+                int most = 0;
+                for (int c = 0; c < 3; ++c)
+                    most = std::max(most, std::abs(with.at(x, y)[c] - without.at(x, y)[c]));
+                return style == DrawStyle::textured ? with.at(x, y)[0] > 2 * with.at(x, y)[1] : most > 12;
+            };
+            for (int y = 0; y < 160; ++y) seen[height > 0] += differs(80, y);
+        }
+        INFO("pixels of the column through its middle: " << seen[0] << " half sunk, " << seen[1] << " above");
+        CHECK(seen[1] > 20);
+        CHECK(seen[0] > 0.4 * seen[1]);
+        CHECK(seen[0] < 0.7 * seen[1]);
     }
 }
 
