@@ -152,11 +152,13 @@ TEST_CASE("GL_drawing_creates_nothing") {
         draw_both(frame);  // drivers compile shader variants on first use, and fill their own pools
     const int objects = live_objects();
     CHECK(objects > 20);
-    const long before = resident();
+    [[maybe_unused]] const long before = resident();
     for (int frame = 100; frame < 300; ++frame) draw_both(frame);
     CHECK(live_objects() == objects);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they keep what was freed for a while
     // One leaked colour target of this size would be 57 kB a picture, 23 MB in all.
     CHECK(resident() - before < 8192);
+#endif
     CHECK(glGetError() == GL_NO_ERROR);
 }
 
