@@ -16,10 +16,13 @@ IntegratorCosts count_costs(const ClothModel& model, const StepOptions& options,
     const double part = h / costs.substeps;
     limit_bend(model.bends, model.mass, part, ws.bend_limit);
     costs.swept = options.sweep && ws.sweep.prepare(model, ws.bend_limit, part);
-    costs.explicit_cost = costs.swept ? cost::swept_step + costs.substeps * cost::swept_substep
-                                      : costs.substeps * cost::turned_substep;
+    const bool touches = !model.solids.empty();
+    const double substep =
+        !costs.swept ? cost::turned_substep : cost::swept_substep + (touches ? cost::swept_contact : 0.0);
+    costs.explicit_cost = (costs.swept ? cost::swept_step : 0.0) + costs.substeps * substep;
     const double iterations = std::min(costs.substeps * cost::iterations_per_substep, cost::most_iterations);
-    costs.coupled_cost = cost::coupled_step + iterations * cost::coupled_iteration;
+    costs.coupled_cost =
+        cost::coupled_step + (touches ? cost::coupled_contact : 0.0) + iterations * cost::coupled_iteration;
     return costs;
 }
 

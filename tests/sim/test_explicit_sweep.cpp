@@ -140,3 +140,20 @@ TEST_CASE(
     fresh = {};
     CHECK(choose_integrator(soft.model, soft.options, 0.005, fresh).integrator == Integrator::explicit_);
 }
+
+TEST_CASE("auto counts the contact that every substep looks into", "[sweep]") {
+    Scene scene = swinging(20);
+    scene.solids.clear();
+    const Simulation in_air = start_simulation(scene);
+    scene.solids.emplace_back().shape = Shape::sphere;
+    const Simulation beside_ball = start_simulation(scene);
+    const auto costs = [](const Simulation& s, double h) {
+        StepWorkspace fresh;
+        return count_costs(s.model, s.options, h, fresh);
+    };
+    double h = 1e-4;
+    while (costs(in_air, h).substeps < 10) h *= 1.3;
+    CHECK(costs(beside_ball, h).substeps == costs(in_air, h).substeps);
+    CHECK(costs(in_air, h).cheaper() == Integrator::explicit_);
+    CHECK(costs(beside_ball, h).cheaper() == Integrator::adaptive_imex);
+}
