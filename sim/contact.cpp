@@ -26,7 +26,8 @@ constexpr std::uint8_t slip_steps = 3;
 constexpr double pinch_cosine = -0.5;
 // A gap below this is rounding [m]: what rests then rests to the last bit, and asks for nothing.
 constexpr double no_gap = 1e-12;
-// A contact that let go with a pull of this many times the particle's weight is not caught again by its weight.
+// A contact that let go with a pull of this many times the particle's weight is not caught again by its
+// weight.
 constexpr double strong_pull = 10;
 // Contacts this parallel are one direction.
 constexpr double parallel_cosine = 0.999;
@@ -50,12 +51,11 @@ bool touches_solid(const Solid& solid, const DeformedSolid* deformed, const Pose
     if (std::abs(touch.gap) < no_gap) touch.gap = 0;
     touch.normal = now.linear() * surface.normal;
     touch.velocity.setZero();
-    if (!solid.motion.empty() || deformed)
-        touch.velocity = (next * surface.carried - view.x[p]) / view.step;
+    if (!solid.motion.empty() || deformed) touch.velocity = (next * surface.carried - view.x[p]) / view.step;
     touch.pinched = false;
-    // Gravity is foreseen, so that what is laid on a slope is caught before it has begun to slide. Not of what
-    // has just let go: the forces on it, gravity among them, pull it off, and catching it again before it has
-    // moved would weld cloth that is pulled over an edge to it.
+    // Gravity is foreseen, so that what is laid on a slope is caught before it has begun to slide. Not of
+    // what has just let go: the forces on it, gravity among them, pull it off, and catching it again before
+    // it has moved would weld cloth that is pulled over an edge to it.
     const bool let_go = known && known->force < 0;
     const bool pulled_off = let_go && -known->force > strong_pull * view.mass[p] * view.gravity.norm();
     const Vec3 fall = pulled_off ? Vec3(Vec3::Zero()) : Vec3(view.step * view.gravity);
@@ -267,7 +267,8 @@ void split_force(Group group, const Vec3& force, std::span<double> along) {
 }
 
 // Contact after the solve, from the force that held it.
-Contact judge(const Friction& friction, const Touch& touch, const Vec3& force, double normal, double nothing) {
+Contact judge(const Friction& friction, const Touch& touch, const Vec3& force, double normal,
+              double nothing) {
     Contact c = touch.contact;
     if (touch.pinched) {
         c.force = std::abs(normal);

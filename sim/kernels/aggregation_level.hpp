@@ -35,8 +35,8 @@ struct Block3 {
     Block3 block() const { return *this; }
 };
 
-/// A spring's block B = a I + w wᵀ in one machine vector: w, and a in the fourth lane. times() leaves a fourth lane without a
-/// meaning.
+/// A spring's block B = a I + w wᵀ in one machine vector: w, and a in the fourth lane. times() leaves a
+/// fourth lane without a meaning.
 struct RankOneBlock {
     Float4 wa;
     Float4 times(const Float4& v) const { return wa * (wa * v).sum() + wa[3] * v; }

@@ -7,8 +7,9 @@ namespace {
 // In the order of the enums in scene.hpp.
 constexpr std::string_view integrators[] = {"explicit",      "implicit", "newton",         "imex",
                                             "adaptive-imex", "bdf2",     "adaptive-imex2", "auto"};
-constexpr std::string_view preconditioners[] = {"none", "diagonal", "block", "constrained-block",
-                                                "ssor", "ic0", "auto", "stencil-block", "multigrid", "aggregation"};
+constexpr std::string_view preconditioners[] = {"none",      "diagonal",   "block", "constrained-block",
+                                                "ssor",      "ic0",        "auto",  "stencil-block",
+                                                "multigrid", "aggregation"};
 
 constexpr std::string_view bend_treatments[] = {"scheme", "explicit"};
 constexpr std::string_view activations[] = {"start", "predicted", "resolve", "ahead"};

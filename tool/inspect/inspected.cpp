@@ -38,7 +38,8 @@ InspectedStep inspect_step(const Scene& scene, const RunFolder& folder, int fram
     const ClothModel& model = out.simulation.model;
     out.steps = out.simulation.steps_per_frame;
     out.step = step == 0 ? out.steps : step;
-    if (frame < 1) throw UsageError("--frame: there is no step before frame 1, the first that can be inspected");
+    if (frame < 1)
+        throw UsageError("--frame: there is no step before frame 1, the first that can be inspected");
     if (out.step > out.steps)
         throw UsageError(fmt::format("--step {}: a frame of this run has {} steps", out.step, out.steps));
 
