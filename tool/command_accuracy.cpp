@@ -145,7 +145,15 @@ int command_accuracy(const Options& options) {
     std::string missing;
     AccuracyStudy study = options.collect ? collect_accuracy(scene, root, missing)
                                           : study_accuracy(scene, root, budget, keep_on);
-    if (study.points.empty() && missing.empty()) return exit_interrupted;
+    if (study.points.empty() && missing.empty()) {
+        if (keep_on())
+            fmt::print(
+                stderr,
+                "unravel: {:g} minutes ended before one point was timed; the same command goes on, with "
+                "--budget for more at once\n",
+                options.budget);
+        return exit_interrupted;
+    }
     const bool same_processor = study.points.empty() || conclude(study, root, options);
     if (!missing.empty())
         throw MissingPieces("points are missing:" + missing +

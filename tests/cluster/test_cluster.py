@@ -202,7 +202,7 @@ def accuracy_rows(file):
 def test_points_of_an_accuracy_study_are_as_on_one_machine(cluster, folder):
     (scene,) = make_scenes(folder, 1, 11)
     here, there = folder / "here", folder / "there"
-    cluster.tool(["accuracy", scene, "-o", here, "--budget", os.environ.get("UNRAVEL_BUDGET", "0.1")])
+    cluster.tool(["accuracy", scene, "-o", here, "--budget", os.environ.get("UNRAVEL_BUDGET", "0.3")])
     there.mkdir()
     for name in ("scene.toml", "reference.bin"):
         shutil.copy(here / name, there)
