@@ -18,8 +18,9 @@ constexpr std::size_t cache_bytes = 1024 * 1024;
 constexpr std::size_t most_levels = 8;
 // A cloth that fits into a core's second cache as a whole needs no such care.
 constexpr std::size_t small_bytes = 256 * 1024;
-// A smaller cloth is one thread's work.
-constexpr std::size_t shared_size = 2048;
+// A smaller cloth is one thread's work: among others, and by itself. Threads that share a cloth wait for each
+// other row by row, which on a busy machine takes as long as the system lets another program run.
+constexpr std::size_t shared_size = 2048, shared_size_alone = 512;
 
 }  // namespace
 
@@ -115,7 +116,8 @@ void ExplicitSweep::run(const ClothModel& model, const ClothState& state, int su
     }
     const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
     const auto is_shared = [&](const SweptCloth& cloth) {
-        return threads > 1 && (memory.cloths.size() == 1 || cloth.patch.count() >= shared_size);
+        const std::size_t least = memory.cloths.size() == 1 ? shared_size_alone : shared_size;
+        return threads > 1 && cloth.patch.count() >= least;
     };
     for (SweptCloth& cloth : memory.cloths) {
         if (is_shared(cloth)) sweep_together(model, memory, cloth, threads);
