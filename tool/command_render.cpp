@@ -22,15 +22,11 @@ namespace unravel {
 
 namespace {
 
-constexpr std::size_t largest_run_json = std::size_t{64} << 20;
-
 // What the run left about itself; a run that was killed left nothing, and its page says less.
 nlohmann::ordered_json earlier_run(const RunFolder& folder) {
-    nlohmann::ordered_json run{{"status", "unfinished"}};
-    if (!std::filesystem::exists(folder.run_json())) return run;
-    const auto read =
-        nlohmann::ordered_json::parse(read_whole_text(folder.run_json(), largest_run_json), nullptr, false);
-    return read.is_object() ? read : run;
+    nlohmann::ordered_json run = read_run_json(folder);
+    if (run.is_null()) run = {{"status", "unfinished"}};
+    return run;
 }
 
 void print_files(const Options& options, const RunFolder& folder, const ClipOptions& clip_options,

@@ -49,10 +49,8 @@ std::string first_difference(const std::string& before, const std::string& now) 
 // The version of the tool that a folder's run was made with, as its run.json says.
 std::string version_of_run(const RunFolder& folder) {
     const std::string unknown = "of a version that is not known";
-    if (!fs::exists(folder.run_json())) return unknown;
-    const auto run =
-        nlohmann::json::parse(read_whole_text(folder.run_json(), largest_run_json), nullptr, false);
-    const bool told = run.is_object() && run.contains("version") && run["version"].is_string();
+    const nlohmann::ordered_json run = read_run_json(folder);
+    const bool told = run.contains("version") && run["version"].is_string();
     return told ? run["version"].get<std::string>() : unknown;
 }
 
@@ -188,6 +186,14 @@ int cached_frames(const RunFolder& folder, const Scene& scene, std::uint64_t has
         ++frames;
     }
     return frames;
+}
+
+nlohmann::ordered_json read_run_json(const RunFolder& folder) {
+    if (!fs::exists(folder.run_json())) return {};
+    auto run =
+        nlohmann::ordered_json::parse(read_whole_text(folder.run_json(), largest_run_json), nullptr, false);
+    if (!run.is_object()) return {};
+    return run;
 }
 
 std::string why_unusable(const RunFolder& folder, int frame, std::uint64_t scene_hash) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@ struct RunFolder {
     std::filesystem::path picture(const std::string& view, int frame) const;
     std::filesystem::path video(const std::string& view, const std::string& ending) const;
 };
+
+/// A run's run.json; null where there is none, or where what is there is no JSON object.
+nlohmann::ordered_json read_run_json(const RunFolder& folder);
 
 /// No stats.csv is longer; one that is would be no such file.
 inline constexpr std::size_t largest_stats = std::size_t{1} << 30;

@@ -66,9 +66,8 @@ std::vector<ListedScene> list_scenes(const Options& options) {
 
 bool is_complete(const ListedScene& listed, const std::vector<std::string>& command) {
     const RunFolder& folder = listed.folder;
-    if (!fs::exists(folder.run_json()) || !fs::exists(folder.scene()) || !fs::exists(folder.report()))
-        return false;
-    const auto run = nlohmann::json::parse(read_whole_text(folder.run_json(), largest_json), nullptr, false);
+    if (!fs::exists(folder.scene()) || !fs::exists(folder.report())) return false;
+    const nlohmann::ordered_json run = read_run_json(folder);
     if (!run.is_object() || run.value("status", "") != "complete" ||
         run.value("command", std::vector<std::string>()) != command ||
         read_whole_text(folder.scene(), largest_json) != scene_to_toml(listed.scene))

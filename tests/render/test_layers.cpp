@@ -138,8 +138,7 @@ TEST_CASE("GL_what_reaches_below_the_ground_is_hidden_by_it") {
             renderer.draw(style, frame, with);
             frame.solid_poses[0].translation() = Vec3f(0, -5, 0);
             renderer.draw(style, frame, without);
-            // Beside its shadow: only what is drawn in its own place changes in the column through its
-            // middle.
+            // By its red where it casts a shadow, which changes the ground as well.
             const auto differs = [&](int x, int y) {
                 int most = 0;
                 for (int c = 0; c < 3; ++c)
