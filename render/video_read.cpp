@@ -32,7 +32,7 @@ bool index_first(const std::filesystem::path& file) {
     return false;
 }
 
-void require(int result, const std::filesystem::path& file, const av::LogCapture& log) {
+void require_read(int result, const std::filesystem::path& file, const av::LogCapture& log) {
     if (result < 0) throw InputError(file, log.explain(result));
 }
 
@@ -94,33 +94,33 @@ VideoFacts read_video(const std::filesystem::path& file,
                       const std::function<void(const Image&, double)>& each) {
     const av::LogCapture log;
     AVFormatContext* opened = nullptr;
-    require(avformat_open_input(&opened, ("file:" + file.string()).c_str(), nullptr, nullptr), file, log);
+    require_read(avformat_open_input(&opened, ("file:" + file.string()).c_str(), nullptr, nullptr), file, log);
     const av::Demuxer demuxer(opened);
-    require(avformat_find_stream_info(demuxer.get(), nullptr), file, log);
+    require_read(avformat_find_stream_info(demuxer.get(), nullptr), file, log);
     const AVCodec* codec = nullptr;
     const int index = av_find_best_stream(demuxer.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &codec, 0);
-    require(index, file, log);
+    require_read(index, file, log);
     const AVStream& stream = *demuxer->streams[index];
     const VideoFacts facts = facts_of(stream, file);
     if (!each) return facts;
 
     const auto decoder = av::made<av::Codec>(avcodec_alloc_context3(codec));
-    require(avcodec_parameters_to_context(decoder.get(), stream.codecpar), file, log);
+    require_read(avcodec_parameters_to_context(decoder.get(), stream.codecpar), file, log);
     decoder->pkt_timebase = stream.time_base;
-    require(avcodec_open2(decoder.get(), codec, nullptr), file, log);
+    require_read(avcodec_open2(decoder.get(), codec, nullptr), file, log);
     const auto packet = av::made<av::Packet>(av_packet_alloc());
     Frames frames(stream, each);
     int result = 0;
     while ((result = av_read_frame(demuxer.get(), packet.get())) >= 0) {
         if (packet->stream_index == index) {
-            require(avcodec_send_packet(decoder.get(), packet.get()), file, log);
-            require(frames.drain(*decoder), file, log);
+            require_read(avcodec_send_packet(decoder.get(), packet.get()), file, log);
+            require_read(frames.drain(*decoder), file, log);
         }
         av_packet_unref(packet.get());
     }
-    if (result != AVERROR_EOF) require(result, file, log);
-    require(avcodec_send_packet(decoder.get(), nullptr), file, log);
-    require(frames.drain(*decoder), file, log);
+    if (result != AVERROR_EOF) require_read(result, file, log);
+    require_read(avcodec_send_packet(decoder.get(), nullptr), file, log);
+    require_read(frames.drain(*decoder), file, log);
     return facts;
 }
 

@@ -10,7 +10,7 @@
 namespace unravel {
 namespace {
 
-void require(int result, const std::filesystem::path& file, const av::LogCapture& log) {
+void require_written(int result, const std::filesystem::path& file, const av::LogCapture& log) {
     // FFmpeg's own error numbers are tags far below the system's.
     if (result < 0 && result > -4096) throw OutputError(file, -result);
     if (result < 0) throw OutputError(file, log.explain(result));
@@ -73,10 +73,10 @@ VideoWriter::Parts::Parts(const std::filesystem::path& file, const VideoSettings
     // "file:" keeps a colon in the name from being read as a protocol.
     const std::string url = "file:" + whole.temporary().string();
     AVIOContext* opened = nullptr;
-    require(avio_open(&opened, url.c_str(), AVIO_FLAG_WRITE), file, log);
+    require_written(avio_open(&opened, url.c_str(), AVIO_FLAG_WRITE), file, log);
     io.reset(opened);
     AVFormatContext* made = nullptr;
-    require(avformat_alloc_output_context2(&made, nullptr, container.muxer, url.c_str()), file, log);
+    require_written(avformat_alloc_output_context2(&made, nullptr, container.muxer, url.c_str()), file, log);
     muxer.reset(made);
     muxer->pb = io.get();
     // No version of FFmpeg, no date and no random identifiers in the file.
@@ -85,12 +85,12 @@ VideoWriter::Parts::Parts(const std::filesystem::path& file, const VideoSettings
     const AVCodecContext& context = *encoder.context;
     stream = avformat_new_stream(muxer.get(), nullptr);
     if (!stream) throw std::bad_alloc();
-    require(avcodec_parameters_from_context(stream->codecpar, &context), file, log);
+    require_written(avcodec_parameters_from_context(stream->codecpar, &context), file, log);
     stream->time_base = context.time_base;
     stream->avg_frame_rate = context.framerate;
     if (settings.faststart && std::string_view(container.muxer) == "mp4")
         av_opt_set(muxer->priv_data, "movflags", "+faststart", 0);
-    require(avformat_write_header(muxer.get(), nullptr), file, log);
+    require_written(avformat_write_header(muxer.get(), nullptr), file, log);
 
     frame->format = context.pix_fmt;
     frame->width = context.width;
@@ -101,7 +101,7 @@ VideoWriter::Parts::Parts(const std::filesystem::path& file, const VideoSettings
     frame->color_range = context.color_range;
     frame->chroma_location = context.chroma_sample_location;
     frame->sample_aspect_ratio = context.sample_aspect_ratio;
-    require(av_frame_get_buffer(frame.get(), 0), file, log);
+    require_written(av_frame_get_buffer(frame.get(), 0), file, log);
     if (context.pix_fmt != AV_PIX_FMT_PAL8)
         scaler = av::make_converter(context.width, context.height,
                                     settings.alpha ? AV_PIX_FMT_RGBA : AV_PIX_FMT_RGB0, context.pix_fmt);
@@ -116,17 +116,17 @@ void VideoWriter::Parts::convert(const Image& image) {
 
 void VideoWriter::Parts::encode(const AVFrame* next) {
     const av::LogCapture log;
-    require(avcodec_send_frame(encoder.context.get(), next), whole.target(), log);
+    require_written(avcodec_send_frame(encoder.context.get(), next), whole.target(), log);
     for (;;) {
         const int result = avcodec_receive_packet(encoder.context.get(), packet.get());
         if (result == AVERROR(EAGAIN) || result == AVERROR_EOF) return;
-        require(result, whole.target(), log);
+        require_written(result, whole.target(), log);
         // Some encoders leave this out, and some players then drop the last frame.
         if (packet->duration == 0) packet->duration = 1;
         // The muxer may have chosen another time base than it was asked for.
         av_packet_rescale_ts(packet.get(), encoder.context->time_base, stream->time_base);
         packet->stream_index = stream->index;
-        require(av_interleaved_write_frame(muxer.get(), packet.get()), whole.target(), log);
+        require_written(av_interleaved_write_frame(muxer.get(), packet.get()), whole.target(), log);
     }
 }
 
@@ -134,8 +134,8 @@ void VideoWriter::Parts::finish() {
     if (count == 0) return;
     encode(nullptr);
     const av::LogCapture log;
-    require(av_write_trailer(muxer.get()), whole.target(), log);
-    require(avio_close(io.release()), whole.target(), log);
+    require_written(av_write_trailer(muxer.get()), whole.target(), log);
+    require_written(avio_close(io.release()), whole.target(), log);
     whole.commit();
 }
 

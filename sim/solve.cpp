@@ -28,7 +28,7 @@ Preconditioner on_rows(Preconditioner kind) {
 constexpr std::uint32_t iterations_worth_cycles = 60;
 // Iterations after which the constrained block gives way to cycles that nobody expected to pay, and cycles
 // after which they give way.
-constexpr std::uint32_t most_iterations = 150, most_cycles = 60;
+constexpr std::uint32_t most_iterations = 150, most_aggregation_cycles = 60;
 constexpr std::uint32_t ever = std::numeric_limits<std::uint32_t>::max();
 
 // The rows of one component and the vectors over them.
@@ -131,7 +131,7 @@ ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
     Aggregation* const aggregation = rows.ws.aggregation_of[rows.component];
     const bool chooses = rows.chooses;
     bool cycles = aggregation && (!chooses || pays_cycles(rows));
-    std::uint32_t until = !aggregation ? ever : cycles ? most_cycles : most_iterations;
+    std::uint32_t until = !aggregation ? ever : cycles ? most_aggregation_cycles : most_iterations;
     bool built = false;
     // q = P⁻¹ r; returns r·q
     const auto precondition = [&] {

@@ -19,7 +19,7 @@ constexpr double stiffest_in_float = 1e5;
 // What a solve by multigrid costs, set-up included, in iterations with blocks.
 constexpr std::uint32_t iterations_worth_multigrid = 60;
 // Cycles after which multigrid gives way to blocks.
-constexpr std::uint32_t most_cycles = 60;
+constexpr std::uint32_t most_multigrid_cycles = 60;
 
 const GridSprings* grid_of(std::span<const GridSprings> grids, std::uint32_t particle) {
     for (const GridSprings& g : grids) {
@@ -78,7 +78,7 @@ void solve_grid(const SolveOptions& options, GridSolves::Grid& grid) {
     const bool chooses = options.preconditioner == Preconditioner::automatic;
     const bool multigrid =
         options.preconditioner == Preconditioner::multigrid || (chooses && pays_multigrid(grid.system));
-    const std::uint32_t patience = multigrid ? most_cycles
+    const std::uint32_t patience = multigrid ? most_multigrid_cycles
                                    : chooses ? iterations_worth_multigrid
                                              : std::numeric_limits<std::uint32_t>::max();
     grid.solved = grid.system.stiffest <= stiffest_in_float &&

@@ -16,7 +16,7 @@ namespace unravel {
 
 namespace {
 
-constexpr int view_width = 800;
+constexpr int reproduced_width = 800;
 
 std::string figure_html(const std::string& type, const std::vector<std::uint8_t>& bytes,
                         const std::string& caption) {
@@ -33,7 +33,7 @@ std::string claim_html(const Claim& claim) {
     if (!claim.why.empty()) html += fmt::format("<p><b>Why they differ:</b> {}</p>\n", html_text(claim.why));
     html += "<div class=\"figures\">";
     for (const auto& [name, picture] : claim.views)
-        html += figure_html("webp", encode_webp(shrink(picture, view_width), 88), name);
+        html += figure_html("webp", encode_webp(shrink(picture, reproduced_width), 88), name);
     for (const Figure& figure : claim.figures)
         html += figure_html("svg+xml", {figure.svg.begin(), figure.svg.end()}, figure.caption);
     html += "</div>\n<p class=\"hint\">Again:</p><pre tabindex=\"0\">";

@@ -18,7 +18,7 @@ namespace {
 
 // In units of the text's size.
 constexpr double line_height = 1.5, padding = 0.8, swatch = 0.85, panel_width = 23, bar_height = 0.8;
-constexpr Rgb panel{16, 18, 22}, ink{232, 234, 238}, quiet_ink{168, 172, 182};
+constexpr Rgb panel{16, 18, 22}, legend_ink{232, 234, 238}, quiet_ink{168, 172, 182};
 
 struct Row {
     std::vector<Rgb> colors;  // one, or some of many
@@ -97,7 +97,7 @@ void draw(Canvas& canvas, double size, double height, const Content& content) {
     const double left = padding * size;
     double y = padding * size + size;
     canvas.font(size, true);
-    canvas.color(ink);
+    canvas.color(legend_ink);
     canvas.text(left, y, content.title);
     y += line_height * size;
     canvas.font(size);
@@ -111,7 +111,7 @@ void draw(Canvas& canvas, double size, double height, const Content& content) {
             canvas.rectangle(x, y - swatch * size, swatch * size, swatch * size);
             x += 1.1 * swatch * size;
         }
-        canvas.color(ink);
+        canvas.color(legend_ink);
         canvas.text(x + 0.4 * size, y, row.text);
         y += line_height * size;
     }
@@ -124,7 +124,7 @@ void draw(Canvas& canvas, double size, double height, const Content& content) {
                          bar_height * size);
     }
     y += line_height * size;
-    canvas.color(ink);
+    canvas.color(legend_ink);
     canvas.text(left, y, content.low);
     canvas.text(left + width, y, content.high, Align::end);
 }

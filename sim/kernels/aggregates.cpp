@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t none = Aggregates::none;
 // A level of no more nodes is the last.
-constexpr std::size_t coarsest_nodes = 32;
+constexpr std::size_t coarsest_aggregates = 32;
 // So is one that has more than this share of the level above.
 constexpr double least_shrinking = 0.8;
 // Members beyond which an aggregate takes no stray in.
@@ -169,7 +169,7 @@ Aggregates make_aggregates(std::size_t particles, const ExtensionSprings& spring
     for (std::uint32_t k = 0; k < particles; ++k) place[out.order[k]] = k;
     for (Graph::Edge& e : edges) e = {place[e.from], place[e.to], e.weight};
     Graph level = graph_of(particles, std::move(edges));
-    while (level.nodes() > coarsest_nodes) {
+    while (level.nodes() > coarsest_aggregates) {
         std::uint32_t pairs = 0, aggregates = 0;
         std::vector<std::uint32_t> parent = match(level, pairs);
         const std::vector<std::uint32_t> of_pair = match(grouped(level, parent, pairs, true), aggregates);

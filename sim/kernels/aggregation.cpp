@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int32_t free_row = -1, absent_row = -2;
 // Sweeps on the last level besides the first, when no coarser one follows.
-constexpr int coarsest_sweeps = 3;
+constexpr int coarsest_aggregate_sweeps = 3;
 // A level of no more rows is the last.
 constexpr std::uint32_t coarsest_rows = 32;
 
@@ -280,7 +280,7 @@ void Aggregation::cycle(Level& level, std::size_t depth) {
     constexpr bool finest = std::is_same_v<Level, Fine>;
     level.relax();
     if (depth == depth_) {
-        for (int k = 0; k < coarsest_sweeps; ++k) level.correct();
+        for (int k = 0; k < coarsest_aggregate_sweeps; ++k) level.correct();
         return;
     }
     const auto filter = [&](std::uint32_t i, const Float4& y) {

@@ -14,30 +14,30 @@ struct Way {
 constexpr Way ways[4] = {{0, 1, 0}, {0, 0, 1}, {0, 1, 1}, {1, 0, 1}};
 
 // Every second lane.
-UNRAVEL_INLINE f8 evens(const float* v) {
+UNRAVEL_INLINE f8 even_lanes(const float* v) {
     return __builtin_shufflevector(Lanes<f8>::load(v), Lanes<f8>::load(v + 8), 0, 2, 4, 6, 8, 10, 12, 14);
 }
-UNRAVEL_INLINE Sym3<f8> evens_block(Springs, const float* p, int pitch) {
+UNRAVEL_INLINE Sym3<f8> even_blocks(Springs, const float* p, int pitch) {
     return as_matrix(
-        SpringBlock<f8>{evens(p), {evens(p + pitch), evens(p + 2 * pitch), evens(p + 3 * pitch)}});
+        SpringBlock<f8>{even_lanes(p), {even_lanes(p + pitch), even_lanes(p + 2 * pitch), even_lanes(p + 3 * pitch)}});
 }
-UNRAVEL_INLINE Sym3<f8> evens_block(Blocks, const float* p, int pitch) {
-    return {evens(p),
-            evens(p + pitch),
-            evens(p + 2 * pitch),
-            evens(p + 3 * pitch),
-            evens(p + 4 * pitch),
-            evens(p + 5 * pitch)};
+UNRAVEL_INLINE Sym3<f8> even_blocks(Blocks, const float* p, int pitch) {
+    return {even_lanes(p),
+            even_lanes(p + pitch),
+            even_lanes(p + 2 * pitch),
+            even_lanes(p + 3 * pitch),
+            even_lanes(p + 4 * pitch),
+            even_lanes(p + 5 * pitch)};
 }
 UNRAVEL_INLINE Sym3<f8> times(f8 s, Sym3<f8> m) {
     return {s * m.xx, s * m.xy, s * m.xz, s * m.yy, s * m.yz, s * m.zz};
 }
 UNRAVEL_INLINE Sym3<f8> evens_self(Mass, const float* p, int) {
-    const f8 m = evens(p), zero{};
+    const f8 m = even_lanes(p), zero{};
     return {m, zero, zero, m, zero, m};
 }
 UNRAVEL_INLINE Sym3<f8> evens_self(Ground, const float* p, int pitch) {
-    return evens_block(Blocks{}, p, pitch);
+    return even_blocks(Blocks{}, p, pitch);
 }
 
 UNRAVEL_INLINE Sym3<float> block_at(Springs, const float* p, int pitch) {
@@ -138,10 +138,10 @@ void coarsen(const StencilGrid& g, const float* D, const float* active, const St
                 const float* const act_below = row_of(active, g, below ? row + 1 : row, 1);
                 const auto take = [&](int into, int d, int side) {
                     const int i = 2 * I + side;
-                    const f8 both = evens(act + i + ways[d].from) *
-                                    evens((ways[d].down ? act_below : act) + i + ways[d].to);
+                    const f8 both = even_lanes(act + i + ways[d].from) *
+                                    even_lanes((ways[d].down ? act_below : act) + i + ways[d].to);
                     sum[into] = sum[into] + times(half * both,
-                                                  evens_block(Coupling{}, at + d * c * g.pitch + i, g.pitch));
+                                                  even_blocks(Coupling{}, at + d * c * g.pitch + i, g.pitch));
                 };
                 take(0, 0, 1);
                 if (last) {
@@ -156,7 +156,7 @@ void coarsen(const StencilGrid& g, const float* D, const float* active, const St
                 }
                 for (int side = 0; side < 2; ++side) {
                     const int i = 2 * I + side;
-                    const f8 a = evens(act + i);
+                    const f8 a = even_lanes(act + i);
                     any = any + a;
                     sum[4] = sum[4] +
                              times(a, evens_self(Self{}, row_of(g.self, g, row, Self::numbers) + i, g.pitch));

@@ -7,7 +7,6 @@ namespace unravel {
 
 namespace {
 
-constexpr int margin = StencilGrid::margin;
 
 // The recursive residual aims a little lower than the tolerance, so that the true one seldom misses it.
 constexpr double aim = 0.95;
@@ -51,7 +50,7 @@ struct GridCg {
         return memory.data();
     }
     std::ptrdiff_t row(int j, int numbers) const {
-        return static_cast<std::ptrdiff_t>(j) * numbers * g.pitch + margin;
+        return static_cast<std::ptrdiff_t>(j) * numbers * g.pitch + StencilGrid::margin;
     }
 
     // ‖b‖² in the norm of P.
@@ -110,7 +109,7 @@ struct GridCg {
     // x += d, d = 0
     void take_correction() {
         sweep([&](int begin, int end) {
-            for (std::ptrdiff_t k = row(begin, 3) - margin; k < row(end, 3) - margin; ++k) {
+            for (std::ptrdiff_t k = row(begin, 3) - StencilGrid::margin; k < row(end, 3) - StencilGrid::margin; ++k) {
                 const auto n = static_cast<std::size_t>(k);
                 system.x[n] += static_cast<double>(ws.d[n]);
                 ws.d[n] = 0;

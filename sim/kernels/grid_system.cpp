@@ -10,7 +10,6 @@ namespace unravel {
 
 namespace {
 
-constexpr int margin = StencilGrid::margin;
 
 // Orthonormal columns that span the range of a projection of rank 1 or 2; the second may be zero.
 void free_directions(const Mat3& S, double* out) {
@@ -40,7 +39,7 @@ struct Loader {
 
     bool ours(std::uint32_t p) const { return components.label[p] == label; }
     std::ptrdiff_t at(int i, int j, int numbers) const {
-        return static_cast<std::ptrdiff_t>(j) * numbers * pitch + margin + i;
+        return static_cast<std::ptrdiff_t>(j) * numbers * pitch + StencilGrid::margin + i;
     }
 };
 
@@ -145,8 +144,8 @@ double couple(const Loader& l, int j, bool ours, TurnedRows& turned) {
 // What nodes have by themselves.
 void load_nodes(const Loader& l, int j, const TurnedRows& turned) {
     GridSystem& out = l.out;
-    std::fill_n(out.b.data() + l.at(-margin, j, 3), 3 * l.pitch, 0.0);
-    std::fill_n(out.x.data() + l.at(-margin, j, 3), 3 * l.pitch, 0.0);
+    std::fill_n(out.b.data() + l.at(-StencilGrid::margin, j, 3), 3 * l.pitch, 0.0);
+    std::fill_n(out.x.data() + l.at(-StencilGrid::margin, j, 3), 3 * l.pitch, 0.0);
     turned.fold(j);
     const Row pull = turned.pull(j);
     float* const active = out.active.data() + l.at(0, j, 1);
@@ -222,7 +221,7 @@ void load_grid_system(const GridSprings& springs, const SpringFamily& family, co
     out.first_particle = springs.particle + first_row * springs.nu;
     g.nu = static_cast<int>(springs.nu);
     g.nv = static_cast<int>(last_row - first_row + 1);
-    g.pitch = g.columns() + 2 * margin;
+    g.pitch = g.columns() + 2 * StencilGrid::margin;
     g.tube = springs.tube;
     // What lies outside the grid stays zero from step to step.
     if (first_before != out.first_particle || before.nu != g.nu || before.nv != g.nv ||

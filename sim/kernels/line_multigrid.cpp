@@ -7,9 +7,9 @@ namespace unravel {
 namespace {
 
 // A grid of no more nodes is solved by its lines alone.
-constexpr int coarsest_nodes = 32;
+constexpr int coarsest_grid_nodes = 32;
 // Sweeps of the lines there, down and up.
-constexpr int coarsest_sweeps = 2;
+constexpr int coarsest_grid_sweeps = 2;
 // Columns that one task takes along v.
 constexpr int strip = 64;
 
@@ -76,7 +76,7 @@ void LineMultigrid::build(const GridSystem& system) {
     set_up(levels_[0], 0);
     depth_ = 1;
     const float* active = system.active.data();
-    while (levels_[depth_ - 1].grid.nu * levels_[depth_ - 1].grid.nv > coarsest_nodes) {
+    while (levels_[depth_ - 1].grid.nu * levels_[depth_ - 1].grid.nv > coarsest_grid_nodes) {
         if (levels_.size() == depth_) levels_.emplace_back();
         Level& fine = levels_[depth_ - 1];
         Level& coarse = levels_[depth_];
@@ -164,7 +164,7 @@ void LineMultigrid::cycle(std::size_t depth, const float* r, float* z) {
     const bool coarsest = depth + 1 == depth_;
     find_defect(level, kind, r, z);
     relax_v(level, kind, z);
-    for (int k = 1; coarsest && k < coarsest_sweeps; ++k) {
+    for (int k = 1; coarsest && k < coarsest_grid_sweeps; ++k) {
         find_defect(level, kind, r, z);
         relax_u(level, kind, level.t.data(), z, true);
         find_defect(level, kind, r, z);
@@ -183,7 +183,7 @@ void LineMultigrid::cycle(std::size_t depth, const float* r, float* z) {
             kernels.transfer.prolong_add(g, coarse.grid, begin, end, coarse.z.data(), z, scratch(floats));
         });
     }
-    for (int k = 0; k < (coarsest ? coarsest_sweeps : 1); ++k) {
+    for (int k = 0; k < (coarsest ? coarsest_grid_sweeps : 1); ++k) {
         find_defect(level, kind, r, z);
         relax_v(level, kind, z);
         find_defect(level, kind, r, z);

@@ -24,12 +24,12 @@ struct Links {
     std::vector<Link> list;
 
     explicit Links(const MeshCloth& mesh) {
-        struct Pair {
+        struct Joined {
             std::uint32_t a, b;
             double length;
             std::uint8_t hops;
         };
-        std::vector<Pair> pairs;
+        std::vector<Joined> pairs;
         const auto add = [&](std::uint32_t a, std::uint32_t b) {
             pairs.push_back({a, b, (mesh.rest[b] - mesh.rest[a]).norm(), 1});
         };
@@ -41,14 +41,14 @@ struct Links {
         }
         for (const auto& [a, b] : mesh.seams) pairs.push_back({a, b, 0.0, 0});
         start.assign(mesh.rest.size() + 1, 0);
-        for (const Pair& pair : pairs) {
+        for (const Joined& pair : pairs) {
             ++start[pair.a + 1];
             ++start[pair.b + 1];
         }
         for (std::size_t v = 1; v < start.size(); ++v) start[v] += start[v - 1];
         list.resize(start.back());
         std::vector<std::uint32_t> place(start.begin(), start.end() - 1);
-        for (const Pair& pair : pairs) {
+        for (const Joined& pair : pairs) {
             list[place[pair.a]++] = {pair.b, pair.length, pair.hops};
             list[place[pair.b]++] = {pair.a, pair.length, pair.hops};
         }

@@ -76,10 +76,10 @@ void describe(Fields& f, Cloth& cloth) {
              {0, 1, false, "m"});
     f.seed({"seed", "of the jitter"}, cloth.seed);
     f.list({"region", "parts made of something else; a later one covers an earlier one"}, cloth.regions,
-           Layout::tables, [&](Fields& g, Region& region) { describe(g, region, cloth); });
+           ListForm::tables, [&](Fields& g, Region& region) { describe(g, region, cloth); });
 
     std::vector<Pin> pins;
-    f.list({"pin", "particles that are held or moved"}, cloth.pins, Layout::tables, [&](Fields& g, Pin& pin) {
+    f.list({"pin", "particles that are held or moved"}, cloth.pins, ListForm::tables, [&](Fields& g, Pin& pin) {
         std::vector<std::string> names{pin.name};
         describe(g, pin, names);
         if (g.reading() && grid) check_pin(f, g, cloth, pin, names);
@@ -174,7 +174,7 @@ void describe(Fields& f, Pin& pin, std::vector<std::string>& names) {
     }
     f.place(pin.place, pin_target_name(pin.target));
     f.list({"motion", "keyframes: displacement from, and rotation about the centre of, the pinned particles"},
-           pin.motion, Layout::inline_tables, in_order<Keyframe>());
+           pin.motion, ListForm::inline_tables, in_order<Keyframe>());
     f.optional_number({"release", "s, when it lets go; absent: never"}, pin.release, time_bounds);
 }
 

@@ -21,8 +21,8 @@ void describe(Fields& f, Scene& scene) {
     f.vector({"gravity", "m/s², acceleration of free fall; [0, 0, 0] switches it off"}, scene.gravity,
              {-1000, 1000, false, "m/s²"});
     f.list({"cloth", "a sheet or a tube of cloth; several are written as [[cloth]]", true}, scene.cloths,
-           Layout::tables, [](Fields& g, Cloth& cloth) { describe(g, cloth); });
-    f.list({"solid", "rigid bodies that the cloth meets"}, scene.solids, Layout::tables,
+           ListForm::tables, [](Fields& g, Cloth& cloth) { describe(g, cloth); });
+    f.list({"solid", "rigid bodies that the cloth meets"}, scene.solids, ListForm::tables,
            [](Fields& g, Solid& solid) { describe(g, solid); });
     f.table({"solver", "how the motion is computed"}, [&](Fields& g) { describe(g, scene.solver); });
     f.optional_table({"wind", "air; absent: vacuum"}, scene.wind, Wind{},
@@ -30,7 +30,7 @@ void describe(Fields& f, Scene& scene) {
     f.optional_table({"self_collision", "cloth pushes cloth away; absent: it passes through itself"},
                      scene.self_collision, SelfCollision{},
                      [](Fields& g, SelfCollision& self) { describe(g, self); });
-    f.list({"camera", "views; the first is the main one"}, scene.cameras, Layout::tables,
+    f.list({"camera", "views; the first is the main one"}, scene.cameras, ListForm::tables,
            [](Fields& g, Camera& camera) { describe(g, camera); });
     f.table({"look", "colours and patterns"}, [&](Fields& g) { describe(g, scene.look); });
 }

@@ -53,7 +53,7 @@ void describe(Fields& f, Solid& solid) {
     f.vector({"center", "m"}, solid.center, position_bounds);
     f.vector({"rotation", "degrees about x, then y, then z"}, solid.rotation, rotation_bounds);
     f.list({"motion", "keyframes: displacement from where it stands, and rotation about the pivot"},
-           solid.motion, Layout::inline_tables, in_order<Keyframe>());
+           solid.motion, ListForm::inline_tables, in_order<Keyframe>());
     if (f.reading()) solid.pivot = solid.center;
     f.vector({"pivot", "m, in the world at the start; default: the center"}, solid.pivot, position_bounds);
     const bool plain = f.number_or_table(

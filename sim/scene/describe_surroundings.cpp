@@ -12,7 +12,7 @@ constexpr std::string_view weaves[] = {"plain", "twill", "checks", "stripes", "s
 void describe(Fields& f, Wind& wind) {
     f.place(wind.place);
     f.vector({"velocity", "m/s; zero: still air that resists"}, wind.velocity, speed_bounds);
-    f.list({"keyframes", "velocity over time, instead of `velocity`"}, wind.keyframes, Layout::inline_tables,
+    f.list({"keyframes", "velocity over time, instead of `velocity`"}, wind.keyframes, ListForm::inline_tables,
            in_order<WindKey>());
     f.optional_table(
         {"gust", "a smooth random factor on the wind"}, wind.gust, Gust{}, [](Fields& g, Gust& gust) {
@@ -50,11 +50,11 @@ void describe(Fields& f, Camera& camera) {
     f.number({"fov", "degrees, vertical"}, camera.fov, {1, 170, false, "degrees"});
     f.number({"orbit", "degrees turned about the target over the clip"}, camera.orbit, rotation_bounds);
     f.list({"keyframes", "position and target over time, instead of `position` and `target`"},
-           camera.keyframes, Layout::inline_tables, in_order<Camera::Key>());
+           camera.keyframes, ListForm::inline_tables, in_order<Camera::Key>());
 }
 
 void describe(Fields& f, Look& look) {
-    f.list({"cloth", "one per cloth; the last serves the rest"}, look.cloth, Layout::tables,
+    f.list({"cloth", "one per cloth; the last serves the rest"}, look.cloth, ListForm::tables,
            [](Fields& g, ClothLook& cloth) { describe(g, cloth); });
     f.text({"background", "\"#rrggbb\""}, look.background, TextKind::color);
     f.text({"ground", "\"#rrggbb\""}, look.ground, TextKind::color);

@@ -39,7 +39,7 @@ enum class TextKind {
     path    ///< relative to the scene's folder
 };
 
-enum class Layout { tables, inline_tables };
+enum class ListForm { tables, inline_tables };
 
 class Fields {
 public:
@@ -97,7 +97,7 @@ public:
 
     /// A list of tables; a single table stands for a list of one.
     template <class T, class Describe>
-    void list(const Key& key, std::vector<T>& values, Layout layout, Describe&& describe) {
+    void list(const Key& key, std::vector<T>& values, ListForm layout, Describe&& describe) {
         items(
             key, values.size(), [&](std::size_t count) { values.resize(count); },
             [&](Fields& nested, std::size_t i) { describe(nested, values[i]); }, layout);
@@ -112,7 +112,7 @@ protected:
     virtual bool creates(const Key&) = 0;
     virtual void choose(const Key&, int& index, std::span<const std::string_view> words) = 0;
     virtual void items(const Key&, std::size_t count, const std::function<void(std::size_t)>& resize,
-                       const std::function<void(Fields&, std::size_t)>& item, Layout) = 0;
+                       const std::function<void(Fields&, std::size_t)>& item, ListForm) = 0;
 };
 
 }  // namespace unravel

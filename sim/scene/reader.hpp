@@ -51,7 +51,7 @@ protected:
     bool creates(const Key&) override;
     void choose(const Key&, int& index, std::span<const std::string_view> words) override;
     void items(const Key&, std::size_t count, const std::function<void(std::size_t)>& resize,
-               const std::function<void(Fields&, std::size_t)>& item, Layout) override;
+               const std::function<void(Fields&, std::size_t)>& item, ListForm) override;
 
 private:
     /// The key's value if it is there and may be; marks the key as known.

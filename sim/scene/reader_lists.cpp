@@ -109,18 +109,18 @@ bool Reader::number_or_table(const Key& key, double& out, const Bounds& bounds,
 }
 
 void Reader::items(const Key& key, std::size_t /*count*/, const std::function<void(std::size_t)>& resize,
-                   const std::function<void(Fields&, std::size_t)>& item, Layout layout) {
+                   const std::function<void(Fields&, std::size_t)>& item, ListForm layout) {
     const Node* value = take(key);
     if (!value) return;
     const std::string path = path_of(key.name);
-    if (value->is(Node::Kind::table) && layout == Layout::tables) {
+    if (value->is(Node::Kind::table) && layout == ListForm::tables) {
         resize(1);
         read_table(path + "[0]", *value, [&](Fields& nested) { item(nested, 0); });
         return;
     }
     if (!value->is(Node::Kind::list)) {
         wrong_kind(key.name, *value,
-                   layout == Layout::tables ? "a table or a list of tables" : "a list of tables");
+                   layout == ListForm::tables ? "a table or a list of tables" : "a list of tables");
         return;
     }
     if (value->items.size() > max_list) {

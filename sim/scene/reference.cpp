@@ -99,8 +99,8 @@ protected:
         row(key, fmt::format("\"{}\"", words[static_cast<std::size_t>(index)]), quoted(words));
     }
     void items(const Key& key, std::size_t, const std::function<void(std::size_t)>& resize,
-               const std::function<void(Fields&, std::size_t)>& item, Layout layout) override {
-        const bool tables = layout == Layout::tables;
+               const std::function<void(Fields&, std::size_t)>& item, ListForm layout) override {
+        const bool tables = layout == ListForm::tables;
         row(key, "absent", tables ? "table, or several" : "list of tables");
         resize(1);
         nest(key, path_.empty() ? std::string(key.name) : path_ + "." + std::string(key.name),

@@ -95,13 +95,13 @@ protected:
         put(key, one_of_words(words), words[static_cast<std::size_t>(index)]);
     }
     void items(const Key& key, std::size_t, const std::function<void(std::size_t)>& resize,
-               const std::function<void(Fields&, std::size_t)>& item, Layout layout) override {
+               const std::function<void(Fields&, std::size_t)>& item, ListForm layout) override {
         resize(1);
         const json one = nested([&](Fields& fields) { item(fields, 0); });
         resize(0);
         json list{{"type", "array"}, {"items", one}, {"maxItems", max_list}};
         if (key.required) list["minItems"] = 1;
-        put(key, layout == Layout::tables ? json{{"anyOf", {one, std::move(list)}}} : std::move(list),
+        put(key, layout == ListForm::tables ? json{{"anyOf", {one, std::move(list)}}} : std::move(list),
             nullptr);
     }
 

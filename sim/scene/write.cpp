@@ -81,18 +81,18 @@ protected:
         put(key, toml_text(words[static_cast<std::size_t>(index)]));
     }
     void items(const Key& key, std::size_t count, const std::function<void(std::size_t)>&,
-               const std::function<void(Fields&, std::size_t)>& item, Layout layout) override {
+               const std::function<void(Fields&, std::size_t)>& item, ListForm layout) override {
         if (count == 0) return;
         std::string inline_list = "[";
         for (std::size_t i = 0; i < count; ++i) {
             Writer writer(path_of(key));
             item(writer, i);
-            if (layout == Layout::tables)
+            if (layout == ListForm::tables)
                 nested_ += fmt::format("\n[[{}]]\n{}", path_of(key), writer.lines());
             else
                 inline_list += fmt::format("{}\n    {}", i ? "," : "", writer.inline_table());
         }
-        if (layout == Layout::inline_tables) put(key, inline_list + "\n]");
+        if (layout == ListForm::inline_tables) put(key, inline_list + "\n]");
     }
 
 private:

@@ -10,8 +10,6 @@
 
 namespace unravel {
 
-namespace {
-
 // Rows of a band: what a band evaluates once more, two rows at most, should be little of it.
 constexpr std::size_t band_rows = 16;
 // Rows in flight: a spring reaches from its own to the next but one.
@@ -46,6 +44,8 @@ struct Flight {
     }
     void clear(std::size_t j) { std::fill_n(forces.data() + j % flight * 3 * stride, 3 * stride, 0.0); }
 };
+
+namespace {
 
 // What columns past a tube's seam got is their originals'.
 void fold_over_seam(const RowCloth& cloth, const Row& f) {

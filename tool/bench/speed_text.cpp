@@ -48,7 +48,7 @@ private:
 };
 
 // Half the spread over the median.
-std::string milliseconds(const Spread& s) {
+std::string milliseconds_text(const Spread& s) {
     const double about = 50 * (s.high - s.low) / s.median;
     return about >= 1 ? fmt::format("{:.3g} ±{:.0f}%", 1e3 * s.median, about)
                       : fmt::format("{:.3g}", 1e3 * s.median);
@@ -89,7 +89,7 @@ std::string steps_table(const SpeedBench& bench) {
         for (const SizeRecord& size : bench.sizes) {
             const StepRecord* s = size.step_of(kind.name, kind.threads);
             if (s) points.push_back({size.particles, s->seconds.median});
-            std::string text = s ? milliseconds(s->seconds) : "–";
+            std::string text = s ? milliseconds_text(s->seconds) : "–";
             if (s && s->substeps > 1) text += fmt::format(" ({:.0f} substeps)", s->substeps);
             row.push_back(text);
         }
@@ -132,7 +132,7 @@ std::string solves_table(const SpeedBench& bench) {
         std::vector<std::string> row{fmt::format("{}, {}", way.name, threads_text(way.threads))};
         for (const SizeRecord& size : bench.sizes) {
             const SolveRecord* s = size.solve_of(way.name, way.threads);
-            std::string text = s ? milliseconds(s->seconds) : "–";
+            std::string text = s ? milliseconds_text(s->seconds) : "–";
             if (s && s->iterations > 0) text += fmt::format(" ({:.0f})", s->iterations);
             row.push_back(text);
         }

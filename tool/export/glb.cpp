@@ -87,7 +87,7 @@ Posture difference(const Posture& base, const Posture& other) {
 }
 
 // The JSON part, with the byte ranges of the binary one in the order in which they will be written.
-class Layout {
+class GlbLayout {
 public:
     Json json{
         {"asset", {{"version", "2.0"}, {"generator", "unravel"}, {"extras", {{"units", "metres, y up"}}}}},
@@ -139,7 +139,7 @@ Written export_glb(const ExportSource& source, const std::filesystem::path& fold
     std::vector<Vertices> vertices;
     std::vector<Posture> bases;
     const FrameRecord first = source.read(source.first);
-    Layout layout;
+    GlbLayout layout;
     Json& json = layout.json;
     json["scenes"] = Json::array({{{"nodes", Json::array()}}});
     for (std::size_t c = 0; c < cloths; ++c) {

@@ -12,7 +12,7 @@ namespace unravel {
 namespace {
 
 constexpr std::size_t most_rows = 500;
-constexpr int view_width = 960;
+constexpr int inspected_width = 960;
 
 std::string figure_html(const std::string& type, const std::vector<std::uint8_t>& bytes,
                         const std::string& caption, const std::string& alt) {
@@ -71,7 +71,7 @@ std::string inspect_page(const InspectedStep& step, const std::string& scene_nam
     std::string views_html = views.empty() ? html_text("No views: " + no_views) : "", asked_html, matrices,
                 histograms;
     for (std::size_t k = 0; k < views.size(); ++k)
-        views_html += figure_html("webp", encode_webp(shrink(views[k], view_width), 90), names[k], names[k]);
+        views_html += figure_html("webp", encode_webp(shrink(views[k], inspected_width), 90), names[k], names[k]);
     for (const auto& [heading, numbers] : asked) {
         asked_html += fmt::format("<h2>{}</h2><pre tabindex=\"0\">{}</pre>", html_text(heading),
                                   html_text(numbers.dump(2)));

@@ -12,10 +12,10 @@ namespace unravel {
 
 namespace {
 
-constexpr int side = 480, left = 62, top = 40, page_width = side + left + 18, page_height = side + top + 44;
+constexpr int side = 480, pattern_left = 62, pattern_top = 40, page_width = side + pattern_left + 18, page_height = side + pattern_top + 44;
 // Beyond so many rows a block is less than half a pixel, and dots would only pile up.
 constexpr std::uint32_t most_rows_as_dots = 1200;
-constexpr Rgb ink{20, 60, 130}, outline{205, 30, 30}, grey{90, 96, 106};
+constexpr Rgb block_ink{20, 60, 130}, outline{205, 30, 30}, pattern_grey{90, 96, 106};
 
 void couple(Pattern& pattern, std::uint32_t i, std::uint32_t j) {
     pattern.entries.push_back({i, j});
@@ -46,7 +46,7 @@ Image density(const Pattern& pattern) {
         const auto mix = [&](std::uint8_t c) {
             return static_cast<std::uint8_t>(std::lround(255 + share * (c - 255)));
         };
-        const std::uint8_t value[4] = {mix(ink.r), mix(ink.g), mix(ink.b), 255};
+        const std::uint8_t value[4] = {mix(block_ink.r), mix(block_ink.g), mix(block_ink.b), 255};
         std::copy_n(value, 4, image.pixels.begin() + static_cast<std::ptrdiff_t>(4 * k));
     }
     return image;
@@ -54,13 +54,13 @@ Image density(const Pattern& pattern) {
 
 void draw(const Pattern& pattern, Canvas& canvas) {
     const double unit = static_cast<double>(side) / std::max<std::uint32_t>(pattern.rows, 1);
-    canvas.color(ink);
+    canvas.color(block_ink);
     if (pattern.rows > most_rows_as_dots) {
-        canvas.picture(density(pattern), left, top, side, side);
+        canvas.picture(density(pattern), pattern_left, pattern_top, side, side);
     } else {
         const double dot = std::max(unit, 0.9);
         for (const auto& [row, column] : pattern.entries)
-            canvas.add_rectangle(left + column * unit, top + row * unit, dot, dot);
+            canvas.add_rectangle(pattern_left + column * unit, pattern_top + row * unit, dot, dot);
         canvas.fill();
     }
     canvas.color(outline);
@@ -68,26 +68,26 @@ void draw(const Pattern& pattern, Canvas& canvas) {
     for (const auto& [begin, end] : pattern.blocks) {
         // A component too small to be seen would only leave a red stroke.
         if ((end - begin) * unit < 3) continue;
-        canvas.frame(left + begin * unit, top + begin * unit, (end - begin) * unit, (end - begin) * unit);
+        canvas.frame(pattern_left + begin * unit, pattern_top + begin * unit, (end - begin) * unit, (end - begin) * unit);
     }
-    canvas.color(grey);
+    canvas.color(pattern_grey);
     canvas.width(1);
-    canvas.frame(left, top, side, side);
+    canvas.frame(pattern_left, pattern_top, side, side);
     canvas.font(12);
     if (pattern.rows > 1) {
         for (const Tick& tick : linear_ticks(0, pattern.rows, 6)) {
-            canvas.text(left + tick.value * unit, top + side + 16, tick.label, Align::middle);
-            canvas.text(left - 7, top + tick.value * unit + 4, tick.label, Align::end);
+            canvas.text(pattern_left + tick.value * unit, pattern_top + side + 16, tick.label, Align::middle);
+            canvas.text(pattern_left - 7, pattern_top + tick.value * unit + 4, tick.label, Align::end);
         }
     }
     canvas.text(
-        left + side / 2.0, top + side + 36,
+        pattern_left + side / 2.0, pattern_top + side + 36,
         fmt::format("nz = {}   ({:.2f} blocks per row)", pattern.entries.size(),
                     static_cast<double>(pattern.entries.size()) / std::max<std::uint32_t>(pattern.rows, 1)),
         Align::middle);
     canvas.color({30, 34, 40});
     canvas.font(14, true);
-    canvas.text(left, 24, pattern.title);
+    canvas.text(pattern_left, 24, pattern.title);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace unravel {
 
 namespace {
 
-constexpr Rgb ink{40, 44, 52}, pale{222, 226, 232}, grey{110, 116, 126};
+constexpr Rgb plot_ink{40, 44, 52}, pale{222, 226, 232}, plot_grey{110, 116, 126};
 constexpr double text_size = 12.5, note_size = 10.5;
 constexpr double note_gap = 6;  // between a point and what is written beside it
 
@@ -136,18 +136,18 @@ private:
         for (const Tick& tick : x_ticks_) {
             c_.color(pale, tick.label.empty() ? 0.55 : 1);
             if (plot_.x.categories.empty()) c_.line(x_(tick.value), top_, x_(tick.value), bottom_);
-            c_.color(ink);
+            c_.color(plot_ink);
             c_.text(x_(tick.value), bottom_ + 17, tick.label, Align::middle);
         }
         for (const Tick& tick : y_ticks_) {
             c_.color(pale, tick.label.empty() ? 0.55 : 1);
             c_.line(left_, y_(tick.value), right_, y_(tick.value));
-            c_.color(ink);
+            c_.color(plot_ink);
             c_.text(left_ - 8, y_(tick.value) + 4.5, tick.label, Align::end);
         }
-        c_.color(grey);
+        c_.color(plot_grey);
         c_.frame(left_, top_, right_ - left_, bottom_ - top_);
-        c_.color(ink);
+        c_.color(plot_ink);
         c_.text((left_ + right_) / 2, bottom_ + 40, plot_.x.label, Align::middle);
         if (!plot_.y.label.empty()) c_.text_upwards(16, (top_ + bottom_) / 2, plot_.y.label);
         c_.font(14.5, true);
@@ -177,7 +177,7 @@ private:
                 const double base = y_.log || y_.from > 0 ? bottom_ : y_(0), end = y_(p.y);
                 c_.color(series_color(plot_, k), 0.9);
                 c_.rectangle(x + 0.5, std::min(base, end), std::max(each - 1, 0.5), std::abs(end - base));
-                c_.color(ink);
+                c_.color(plot_ink);
                 error_bar(x + each / 2, p);
                 if (!p.note.empty()) {
                     const double above = y_.holds(p.high) ? y_(p.high) : std::min(base, end);
@@ -190,7 +190,7 @@ private:
 
     void guides() {
         for (const PlotGuide& guide : plot_.guides) {
-            c_.color(grey);
+            c_.color(plot_grey);
             c_.width(1.3);
             c_.dash(true);
             if (guide.horizontal) {
@@ -265,7 +265,7 @@ private:
     // Beside its point, above or below, right or left of it, wherever it covers no other text; a note for
     // which there is no room is left out.
     void labels_of_points() {
-        c_.color(ink);
+        c_.color(plot_ink);
         c_.font(note_size);
         for (const Note& note : notes_) {
             if (note.centred) {
@@ -305,7 +305,7 @@ private:
                 c_.dash(false);
                 if (s.style != SeriesStyle::line) c_.disc(right_ + 23, y - 4.5, 3.4);
             }
-            c_.color(ink);
+            c_.color(plot_ink);
             c_.text(right_ + 42, y, s.label);
             y += 20;
         }

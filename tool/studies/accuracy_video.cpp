@@ -17,7 +17,7 @@ namespace {
 
 constexpr int side_width = 640, side_height = 640, caption_height = 44, scale_height = 36;
 constexpr double decades = 3;
-constexpr Rgb ink{235, 237, 240}, page{27, 30, 36}, exact_color{150, 158, 170};
+constexpr Rgb video_ink{235, 237, 240}, page{27, 30, 36}, exact_color{150, 158, 170};
 
 // m, the largest distance of any particle at any frame.
 double worst_distance(const Trajectory& a, const Trajectory& b) {
@@ -41,7 +41,7 @@ void draw_scale(Canvas& canvas, double worst, double top, double width) {
         canvas.color(heat_color(worst * std::pow(10.0, decades * ((k + 0.5) / cells - 1)), worst));
         canvas.rectangle(left + bar * k / cells, y, bar / cells + 0.5, 12);
     }
-    canvas.color(ink);
+    canvas.color(video_ink);
     canvas.font(14);
     canvas.text(left - 8, y + 11, millimetres(worst * std::pow(10.0, -decades)) + " off", Align::end);
     canvas.text(left + bar + 8, y + 11, millimetres(worst));
@@ -104,7 +104,7 @@ void write_accuracy_video(const Scene& studied, const AccuracySide& cheap, const
             canvas.rectangle(0, 0, settings.width, settings.height);
             canvas.picture(pictures[0], 0, caption_height, side_width, side_height);
             canvas.picture(pictures[1], side_width, caption_height, side_width, side_height);
-            canvas.color(ink);
+            canvas.color(video_ink);
             canvas.font(17);
             canvas.text(0.5 * side_width, 28, cheap.caption, Align::middle);
             canvas.text(1.5 * side_width, 28, accurate.caption, Align::middle);

@@ -14,12 +14,12 @@ using namespace unravel;
 
 namespace {
 
-struct Layout {
+struct ListForm {
     const char* name;
     int nu, nv;
     bool tube;
 };
-constexpr Layout layouts[] = {{"open", 37, 29, false},
+constexpr ListForm layouts[] = {{"open", 37, 29, false},
                               {"wide", 64, 20, false},
                               {"tube", 24, 17, true},
                               {"odd tube", 25, 18, true},
@@ -47,7 +47,7 @@ struct Sheet {
     double uniform() { return seeded_uniform(7, draw++); }
     Vec3 vector() { return {uniform(), uniform(), uniform()}; }
 
-    Sheet(const Layout& layout, unsigned held, double slack = 0.0, double shear = 5) {
+    Sheet(const ListForm& layout, unsigned held, double slack = 0.0, double shear = 5) {
         Scene scene;
         scene.cloths = {testing::sheet(2, 1.0)};
         Cloth& cloth = scene.cloths[0];
@@ -125,7 +125,7 @@ Solved on_grid(const Sheet& sheet, std::uint32_t c, bool multigrid, double toler
 }  // namespace
 
 TEST_CASE("on a grid every component meets the stopping rule of the assembled system, whatever its layout") {
-    for (const Layout& layout : layouts) {
+    for (const ListForm& layout : layouts) {
         for (const unsigned held : {+nothing, +pins, +contacts, pins | contacts}) {
             for (const double slack : {0.0, 0.4}) {
                 const Sheet sheet(layout, held, slack);
@@ -172,7 +172,7 @@ TEST_CASE("multigrid's iterations do not grow with the sheet") {
 }
 
 TEST_CASE("on a grid either preconditioner takes over from the other") {
-    for (const Layout& layout : {layouts[0], layouts[2]}) {
+    for (const ListForm& layout : {layouts[0], layouts[2]}) {
         const Sheet sheet(layout, pins | contacts);
         for (const bool multigrid : {false, true}) {
             const Solved alone = on_grid(sheet, 0, multigrid, 1e-4);
