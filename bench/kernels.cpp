@@ -64,6 +64,7 @@ void step(benchmark::State& state, Integrator integrator) {
 }  // namespace unravel
 
 using namespace unravel;
+using namespace unravel::tool;
 
 BENCHMARK(components)->Arg(10000)->Arg(40000);
 BENCHMARK_CAPTURE(solve, stencil_block, Preconditioner::stencil_block)->Arg(10000)->Arg(40000);

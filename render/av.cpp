@@ -11,7 +11,7 @@ extern "C" {
 #include <mutex>
 #include <stdexcept>
 
-namespace unravel::av {
+namespace unravel::render::av {
 namespace {
 
 // FFmpeg's log callback is one for the whole process and gets no pointer of ours, so the way back to the
@@ -81,4 +81,4 @@ Scaler make_converter(int width, int height, AVPixelFormat from, AVPixelFormat t
     return scaler;
 }
 
-}  // namespace unravel::av
+}  // namespace unravel::render::av

@@ -12,7 +12,7 @@ extern "C" {
 #include <memory>
 #include <string>
 
-namespace unravel::av {
+namespace unravel::render::av {
 
 struct Delete {
     void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
@@ -69,4 +69,4 @@ private:
 Scaler make_converter(int width, int height, AVPixelFormat from, AVPixelFormat to,
                       AVColorSpace yuv = AVCOL_SPC_BT709);
 
-}  // namespace unravel::av
+}  // namespace unravel::render::av

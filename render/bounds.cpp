@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace unravel {
+namespace unravel::render {
 
 namespace {
 
@@ -75,4 +75,4 @@ PixelRect covered_rect(const DrawScene& scene, const DrawFrame& frame, const Eig
     return {left, bottom, right - left, top - bottom};
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

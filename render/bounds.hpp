@@ -5,7 +5,7 @@
 #include "render/draw_scene.hpp"
 #include "render/framebuffer.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// Calls `visit` with points whose convex hull holds all cloths and solids of a frame: every particle, and
 /// eight corners around each solid. Planes have no end and are left out.
@@ -18,4 +18,4 @@ void visit_bounds(const DrawScene& scene, const DrawFrame& frame,
 PixelRect covered_rect(const DrawScene& scene, const DrawFrame& frame, const Eigen::Matrix4f& view_projection,
                        const PixelRect& whole, int margin);
 
-}  // namespace unravel
+}  // namespace unravel::render

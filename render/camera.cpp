@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace unravel {
+namespace unravel::render {
 
 Eigen::Matrix4f look_at(const Vec3f& eye, const Vec3f& target, const Vec3f& up) {
     Vec3f forward = target - eye;
@@ -46,4 +46,4 @@ Projection make_camera(const CameraView& view, float aspect, const Vec3f& low, c
     return camera;
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -2,7 +2,7 @@
 
 #include "render/draw_scene.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// Matrices of a camera, column vectors, GL clip conventions (x right, y up, depth −1 … 1).
 struct Projection {
@@ -20,4 +20,4 @@ Projection make_camera(const CameraView& view, float aspect, const Vec3f& low, c
 /// World to the camera's frame, which looks along −z.
 Eigen::Matrix4f look_at(const Vec3f& eye, const Vec3f& target, const Vec3f& up);
 
-}  // namespace unravel
+}  // namespace unravel::render

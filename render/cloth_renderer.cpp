@@ -12,7 +12,7 @@
 #include "render/normals.hpp"
 #include "render/shadow.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 namespace {
 
@@ -281,4 +281,4 @@ void ClothRenderer::draw_fabric(float pixels) const {
     }
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

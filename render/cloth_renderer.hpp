@@ -6,7 +6,7 @@
 #include "render/draw_scene.hpp"
 #include "render/gl_objects.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// The cloths as surfaces: into shadow maps, as fabric, and as the ground that wires are drawn on.
 class ClothRenderer {
@@ -63,4 +63,4 @@ private:
     std::vector<std::array<std::uint8_t, 4>> scratch_colors_;  ///< of one cloth at a time
 };
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -5,7 +5,7 @@
 
 #include "render/draw_scene.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// One sRGB-encoded channel in [0, 1] to linear light. IEC 61966-2-1.
 inline float srgb_to_linear(float s) {
@@ -21,4 +21,4 @@ inline Vec3f linear(Rgb c) {
     return {srgb_to_linear(c.r / 255.f), srgb_to_linear(c.g / 255.f), srgb_to_linear(c.b / 255.f)};
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

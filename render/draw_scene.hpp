@@ -12,7 +12,7 @@
 
 #include "render/image.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 using Vec3f = Eigen::Vector3f;
 using Vec2f = Eigen::Vector2f;
@@ -94,4 +94,4 @@ struct DrawFrame {
 /// Cloth as it looks; wires in the colours of the frame; those wires on top of that cloth.
 enum class DrawStyle { textured, components, overlay };
 
-}  // namespace unravel
+}  // namespace unravel::render

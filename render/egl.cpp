@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace unravel {
+namespace unravel::render {
 
 namespace {
 
@@ -82,4 +82,4 @@ Egl load_egl() {
     return egl;
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -7,7 +7,7 @@
 
 #include <string>
 
-namespace unravel {
+namespace unravel::render {
 
 /// The EGL entry points used here. The library stays mapped for the life of the process: drivers keep threads
 /// and exit handlers in their own code.
@@ -37,4 +37,4 @@ struct Egl {
 /// Throws std::runtime_error with the loader's reason where there is no libEGL.so.1.
 Egl load_egl();
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -7,7 +7,7 @@
 #include <array>
 #include <cctype>
 
-namespace unravel {
+namespace unravel::render {
 
 namespace {
 
@@ -166,4 +166,4 @@ std::unique_ptr<CurrentContext> reach(const Egl& egl, const Route& route, Render
     return current;
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

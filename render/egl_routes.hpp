@@ -6,7 +6,7 @@
 #include "render/egl.hpp"
 #include "render/gl_context.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// A way to a display that was not tried yet.
 struct Route {
@@ -46,4 +46,4 @@ std::vector<Route> list_routes(const Egl& egl, std::vector<RendererAttempt>& att
 /// call that stopped it, and gives nothing.
 std::unique_ptr<CurrentContext> reach(const Egl& egl, const Route& route, RendererAttempt& attempt);
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace unravel {
+namespace unravel::render {
 
 /// The uniform block "Frame" of shaders/frame.glsl, std140: what every shader of one frame shares. Colours
 /// are linear.
@@ -26,4 +26,4 @@ struct FrameBlock {
 static_assert(sizeof(FrameBlock) ==
               (2 + FrameBlock::sky_directions) * 64 + (FrameBlock::sky_directions + 11) * 16);
 
-}  // namespace unravel
+}  // namespace unravel::render

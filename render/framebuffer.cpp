@@ -6,7 +6,7 @@
 
 #include "render/color.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 namespace {
 
@@ -168,4 +168,4 @@ void Framebuffer::finish(int k, int n) const {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, finished_);
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

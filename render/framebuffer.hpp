@@ -4,7 +4,7 @@
 #include "render/gl_context.hpp"
 #include "render/gl_objects.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// Pixels of a target, from its lower left corner.
 struct PixelRect {
@@ -65,4 +65,4 @@ private:
     GLint factor_, share_, straight_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::render

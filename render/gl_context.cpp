@@ -7,7 +7,7 @@
 
 #include "render/egl_routes.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 namespace {
 
@@ -150,4 +150,4 @@ std::vector<RendererAttempt> probe_renderers() {
     return attempts;
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace unravel {
+namespace unravel::render {
 
 class CurrentContext;
 
@@ -71,4 +71,4 @@ private:
 /// Tries every route to its end and gives the verdicts; never throws for a route that fails.
 std::vector<RendererAttempt> probe_renderers();
 
-}  // namespace unravel
+}  // namespace unravel::render

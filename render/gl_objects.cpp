@@ -7,7 +7,7 @@
 
 #include "render/shader_sources.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 namespace {
 
@@ -98,4 +98,4 @@ void GlProgram::sampler(const char* name, int unit) const {
     glUniform1i(uniform(name), unit);
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace unravel {
+namespace unravel::render {
 
 /// Owns one GL name; moves, never copies.
 template <void (*create)(GLuint*), void (*destroy)(GLuint)>
@@ -126,4 +126,4 @@ private:
     GLuint program_ = 0;
 };
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -8,7 +8,7 @@
 #include "render/bounds.hpp"
 #include "render/color.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 namespace {
 
@@ -175,4 +175,4 @@ void Ground::draw(DrawStyle style, const Vec3f& eye) const {
     glDrawElements(GL_TRIANGLES, 6 * cells * cells, GL_UNSIGNED_SHORT, nullptr);
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -5,7 +5,7 @@
 #include "render/gl_objects.hpp"
 #include "render/shadow.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// The ground below a scene, fading into the background with distance. It fills most of the picture and has
 /// no detail of its own, so what light reaches it is found once a frame, in maps that lie on it and are
@@ -43,4 +43,4 @@ private:
     GlBuffer corners_, cells_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace unravel {
+namespace unravel::render {
 
 /// 8-bit sRGB RGBA picture, top row first, rows tightly packed.
 struct Image {
@@ -17,4 +17,4 @@ struct Image {
     std::uint8_t* at(int x, int y) { return pixels.data() + 4 * (static_cast<std::size_t>(y) * width + x); }
 };
 
-}  // namespace unravel
+}  // namespace unravel::render

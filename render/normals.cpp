@@ -1,6 +1,6 @@
 #include "render/normals.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 void smooth_normals(const ClothMesh& mesh, std::span<const Vec3f> positions, std::span<Vec3f> normals) {
     for (const std::uint32_t p : mesh.particle) normals[p].setZero();
@@ -18,4 +18,4 @@ void smooth_normals(const ClothMesh& mesh, std::span<const Vec3f> positions, std
     }
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

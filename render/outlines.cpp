@@ -7,7 +7,7 @@
 
 #include "render/solid_shapes.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 void Outlines::find_edges(Surface& surface) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
@@ -125,4 +125,4 @@ void Outlines::draw(const Framebuffer& framebuffer, const PixelRect& rect) const
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * count_), GL_UNSIGNED_INT, nullptr);
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

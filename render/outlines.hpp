@@ -6,7 +6,7 @@
 #include "render/framebuffer.hpp"
 #include "render/gl_objects.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// Smooth outlines where a pixel has one sample. An edge of a mesh is part of an outline where the mesh ends,
 /// or where one of its triangles faces the viewer and the other does not; a pixel that such an edge runs
@@ -51,4 +51,4 @@ private:
     GlProgram smooth_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::render

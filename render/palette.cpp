@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace unravel {
+namespace unravel::render {
 
 namespace {
 
@@ -156,4 +156,4 @@ const std::vector<Rgb>& ComponentColors::assign(std::span<const std::int32_t> co
     return colors_;
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

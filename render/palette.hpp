@@ -7,7 +7,7 @@
 
 #include "render/draw_scene.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// Colours of components. The first seven are Okabe & Ito's (2008, Color Universal Design); the others were
 /// found by farthest-point search in OKLab under normal vision and full protan-, deuter- and tritanopia
@@ -58,4 +58,4 @@ private:
     std::vector<Rgb> colors_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -8,7 +8,7 @@
 #include "base/file_errors.hpp"
 #include "render/image.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 struct PngOptions {
     int level = 1;       ///< zlib's, 1 (fast) to 9; beyond 3 rendered frames gain almost nothing
@@ -29,4 +29,4 @@ Image read_png(const std::filesystem::path& file);
 /// The same from memory; `name` stands for the file in messages.
 Image decode_png(std::span<const std::uint8_t> bytes, const std::filesystem::path& name);
 
-}  // namespace unravel
+}  // namespace unravel::render

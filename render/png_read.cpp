@@ -10,7 +10,7 @@
 #include "base/whole_file.hpp"
 #include "render/png.hpp"
 
-namespace unravel {
+namespace unravel::render {
 namespace {
 
 constexpr std::size_t max_file_bytes = std::size_t{512} << 20;
@@ -68,4 +68,4 @@ Image read_png(const std::filesystem::path& file) {
     return decode_png(read_whole_file(file, max_file_bytes), file);
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -9,7 +9,7 @@
 #include "base/whole_file.hpp"
 #include "render/png.hpp"
 
-namespace unravel {
+namespace unravel::render {
 namespace {
 
 // What libpng's callbacks see. The message is a plain array, since libpng leaves its functions by longjmp,
@@ -91,4 +91,4 @@ void write_png(const std::filesystem::path& file, const Image& image, const PngO
     write_whole_file(file, encode_png(image, options));
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

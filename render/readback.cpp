@@ -5,7 +5,7 @@
 
 #include "render/gl_context.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 Readback::Readback(int width, int height) : width_(width), height_(height) {
     for (const GlBuffer& buffer : buffers_)
@@ -42,4 +42,4 @@ void Readback::finish(Image& out) {
     --pending_;
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -5,7 +5,7 @@
 #include "render/gl_objects.hpp"
 #include "render/image.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// Brings finished frames to memory through a ring of pixel buffers, so that a GPU can draw the next frame
 /// while the last one travels.
@@ -26,4 +26,4 @@ private:
     std::array<GlBuffer, depth> buffers_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::render

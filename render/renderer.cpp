@@ -18,7 +18,7 @@
 #include "render/solid_renderer.hpp"
 #include "render/wire_renderer.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 namespace {
 
@@ -282,4 +282,4 @@ std::string Renderer::description() const {
     return text;
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

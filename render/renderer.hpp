@@ -8,7 +8,7 @@
 #include "render/gl_context.hpp"
 #include "render/image.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 struct RenderSettings {
     int width = 1280, height = 720;  ///< px
@@ -49,4 +49,4 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -5,7 +5,7 @@
 
 #include "render/camera.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 namespace {
 
@@ -104,4 +104,4 @@ void ShadowMaps::connect(const GlProgram& program) {
     program.sampler("sky_depth", unit_sky);
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

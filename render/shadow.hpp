@@ -6,7 +6,7 @@
 #include "render/frame_block.hpp"
 #include "render/gl_objects.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// Depth maps of a frame: one sharp map from the key light, and a sheet of coarse ones from directions spread
 /// over the sky, whose mean tells each vertex how open it lies (ambient occlusion from the true geometry).
@@ -43,4 +43,4 @@ private:
     GlFramebuffer key_target_, sky_target_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -5,7 +5,7 @@
 #include "render/color.hpp"
 #include "render/shadow.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 namespace {
 
@@ -166,4 +166,4 @@ void SolidRenderer::draw_quiet_planes(const DrawFrame& frame, const SurfaceUnifo
     glDisable(GL_BLEND);
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

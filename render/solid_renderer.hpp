@@ -6,7 +6,7 @@
 #include "render/gl_objects.hpp"
 #include "render/solid_shapes.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// Solids. Planes fade away with distance from the scene.
 class SolidRenderer {
@@ -69,4 +69,4 @@ private:
     Shaded shaded_, fading_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::render

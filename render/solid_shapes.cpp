@@ -5,7 +5,7 @@
 #include <functional>
 #include <numbers>
 
-namespace unravel {
+namespace unravel::render {
 
 namespace {
 
@@ -164,4 +164,4 @@ Tessellation tessellate_ground(float reach) {
     return mesh;
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

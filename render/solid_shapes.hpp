@@ -4,7 +4,7 @@
 
 #include "render/draw_scene.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// Triangles of a solid in its own frame; counter-clockwise from outside.
 struct Tessellation {
@@ -24,4 +24,4 @@ Tessellation tessellate_mesh(std::span<const std::array<std::uint32_t, 3>> trian
 /// Square of half-width `reach` in the plane y = 0 facing +y, finer towards its middle.
 Tessellation tessellate_ground(float reach);
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -9,7 +9,7 @@
 #include "base/file_errors.hpp"
 #include "render/image.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// The video's ending chooses the container: .mp4 (H.264), .webm (VP9), .mkv (lossless RGB), .gif (256
 /// colours a frame). mp4 and webm are yuv420p, limited range, BT.709, converted so and tagged so.
@@ -83,4 +83,4 @@ struct EncoderVerdict {
 /// Every encoder VideoWriter would try, container by container in its order, really opened.
 std::vector<EncoderVerdict> probe_encoders();
 
-}  // namespace unravel
+}  // namespace unravel::render

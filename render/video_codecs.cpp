@@ -7,7 +7,7 @@
 #include <cctype>
 #include <optional>
 
-namespace unravel::av {
+namespace unravel::render::av {
 namespace {
 
 constexpr std::array containers{
@@ -192,9 +192,9 @@ OpenEncoder choose_encoder(const Container& container, const VideoSettings& sett
                                  failures, encoders_that_open(container, settings)));
 }
 
-}  // namespace unravel::av
+}  // namespace unravel::render::av
 
-namespace unravel {
+namespace unravel::render {
 
 std::vector<EncoderVerdict> probe_encoders() {
     VideoSettings settings;
@@ -214,4 +214,4 @@ std::vector<EncoderVerdict> probe_encoders() {
     return verdicts;
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -8,7 +8,7 @@
 #include "render/av.hpp"
 #include "render/video.hpp"
 
-namespace unravel::av {
+namespace unravel::render::av {
 
 /// A container, by the file's ending.
 struct Container {
@@ -48,4 +48,4 @@ OpenEncoder open_encoder(const EncoderEntry& entry, const VideoSettings& setting
 /// The one asked for, or the first that opens. Throws VideoError with those that do open.
 OpenEncoder choose_encoder(const Container& container, const VideoSettings& settings);
 
-}  // namespace unravel::av
+}  // namespace unravel::render::av

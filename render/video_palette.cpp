@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace unravel::av {
+namespace unravel::render::av {
 namespace {
 
 struct Release {
@@ -61,4 +61,4 @@ void fill_palette_frame(const Image& image, AVFrame& frame) {
     }
 }
 
-}  // namespace unravel::av
+}  // namespace unravel::render::av

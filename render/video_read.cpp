@@ -10,7 +10,7 @@ extern "C" {
 
 #include "render/av.hpp"
 
-namespace unravel {
+namespace unravel::render {
 namespace {
 
 std::string named(const char* name) {
@@ -94,7 +94,8 @@ VideoFacts read_video(const std::filesystem::path& file,
                       const std::function<void(const Image&, double)>& each) {
     const av::LogCapture log;
     AVFormatContext* opened = nullptr;
-    require_read(avformat_open_input(&opened, ("file:" + file.string()).c_str(), nullptr, nullptr), file, log);
+    require_read(avformat_open_input(&opened, ("file:" + file.string()).c_str(), nullptr, nullptr), file,
+                 log);
     const av::Demuxer demuxer(opened);
     require_read(avformat_find_stream_info(demuxer.get(), nullptr), file, log);
     const AVCodec* codec = nullptr;
@@ -124,4 +125,4 @@ VideoFacts read_video(const std::filesystem::path& file,
     return facts;
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -7,7 +7,7 @@
 #include "base/file_errors.hpp"
 #include "render/image.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// What a video file says about itself. Names are FFmpeg's ("h264", "yuv420p", "bt709", "tv").
 struct VideoFacts {
@@ -23,4 +23,4 @@ struct VideoFacts {
 VideoFacts read_video(const std::filesystem::path& file,
                       const std::function<void(const Image&, double seconds)>& each = {});
 
-}  // namespace unravel
+}  // namespace unravel::render

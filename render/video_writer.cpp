@@ -7,7 +7,7 @@
 #include "render/video_codecs.hpp"
 #include "render/video_palette.hpp"
 
-namespace unravel {
+namespace unravel::render {
 namespace {
 
 void require_written(int result, const std::filesystem::path& file, const av::LogCapture& log) {
@@ -173,4 +173,4 @@ const std::string& VideoWriter::description() const {
     return parts_->encoder.description;
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

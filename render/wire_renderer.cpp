@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace unravel {
+namespace unravel::render {
 
 namespace {
 
@@ -105,4 +105,4 @@ void WireRenderer::draw(int height, float gap, bool encoded) const {
     glDisable(GL_BLEND);
 }
 
-}  // namespace unravel
+}  // namespace unravel::render

@@ -5,7 +5,7 @@
 #include "render/draw_scene.hpp"
 #include "render/gl_objects.hpp"
 
-namespace unravel {
+namespace unravel::render {
 
 /// Springs as lines and particles as dots, in the particles' colours, with widths that follow the picture's
 /// height.
@@ -44,4 +44,4 @@ private:
     GLint width_, wire_spacing_, own_colors_, wire_encoded_, radius_, dot_encoded_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::render

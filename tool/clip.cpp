@@ -7,7 +7,7 @@
 #include "tool/studio.hpp"
 #include "tool/view.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 ClipReport make_clip(const Scene& scene, const ClothModel& model, const Placement& placement,
                      const RunFolder& folder, const ClipOptions& options, const FrameSource& source,
@@ -60,4 +60,4 @@ void check_clip(const Scene& scene, const RunFolder& folder, const ClipOptions& 
     const GlContext context(options.device);
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

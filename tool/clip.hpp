@@ -7,13 +7,14 @@
 
 #include "render/gl_context.hpp"
 #include "render/video.hpp"
-#include "sim/frame_record.hpp"
-#include "sim/model.hpp"
+#include "sim/model/model.hpp"
+#include "sim/run/frame_record.hpp"
 #include "sim/scene/scene.hpp"
 #include "tool/clip_view.hpp"
+#include "tool/names.hpp"
 #include "tool/run_folder.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// Which pictures and videos a clip is to have.
 struct ClipOptions {
@@ -61,4 +62,4 @@ ClipReport make_clip(const Scene& scene, const ClothModel& model, const Placemen
 /// computed. Throws RendererError, VideoError.
 void check_clip(const Scene& scene, const RunFolder& folder, const ClipOptions& options);
 
-}  // namespace unravel
+}  // namespace unravel::tool

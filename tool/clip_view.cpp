@@ -2,7 +2,7 @@
 
 #include <cctype>
 
-namespace unravel {
+namespace unravel::tool {
 
 const char* layout_name(Layout layout) {
     switch (layout) {
@@ -49,4 +49,4 @@ std::vector<Shot> shots_of(const ClipView& view) {
     return {};
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -6,8 +6,9 @@
 
 #include "render/draw_scene.hpp"
 #include "sim/scene/scene.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// What a picture is made of: one of the renderer's styles, or both views beside each other.
 enum class Layout { textured, components, overlay, side_by_side };
@@ -39,4 +40,4 @@ struct Shot {
 };
 std::vector<Shot> shots_of(const ClipView& view);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -12,7 +12,7 @@
 #include "base/whole_file.hpp"
 #include "render/png.hpp"
 #include "render/video.hpp"
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tool/interrupt.hpp"
 #include "tool/options.hpp"
 #include "tool/render_options.hpp"
@@ -22,7 +22,7 @@
 #include "tool/studies/accuracy_verdict.hpp"
 #include "tool/studies/accuracy_video.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -194,4 +194,4 @@ int command_accuracy(const Options& options) {
     return same_processor ? exit_done : exit_simulation;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

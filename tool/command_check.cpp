@@ -6,16 +6,16 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "sim/choose_integrator.hpp"
-#include "sim/effects.hpp"
-#include "sim/explicit_limit.hpp"
-#include "sim/scene/load.hpp"
-#include "sim/simulate.hpp"
+#include "sim/model/effects.hpp"
+#include "sim/run/simulate.hpp"
+#include "sim/scene_file/load.hpp"
+#include "sim/step/choose_integrator.hpp"
+#include "sim/step/explicit_limit.hpp"
 #include "tool/options.hpp"
 #include "tool/progress.hpp"
 #include "tool/view.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -119,4 +119,4 @@ int command_check(const Options& options) {
     return exit_done;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -9,7 +9,7 @@
 #include "render/video.hpp"
 #include "tool/options.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -66,4 +66,4 @@ int command_doctor(const Options& options) {
     return draws && encodes ? exit_done : exit_no_renderer;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

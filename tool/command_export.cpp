@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tool/export/export.hpp"
 #include "tool/interrupt.hpp"
 #include "tool/options.hpp"
@@ -12,7 +12,7 @@
 #include "tool/render_options.hpp"
 #include "tool/view.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -81,4 +81,4 @@ int command_export(const Options& options) {
     return InterruptWatch::requested() ? exit_interrupted : exit_done;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

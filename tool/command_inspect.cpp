@@ -4,13 +4,13 @@
 
 #include "base/whole_file.hpp"
 #include "render/png.hpp"
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tool/inspect/numbers.hpp"
 #include "tool/inspect/page.hpp"
 #include "tool/options.hpp"
 #include "tool/still.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -93,4 +93,4 @@ int command_inspect(const Options& options) {
     return exit_done;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

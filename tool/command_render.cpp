@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/whole_file.hpp"
-#include "sim/scene/load.hpp"
-#include "sim/simulate.hpp"
-#include "sim/stats.hpp"
+#include "sim/run/simulate.hpp"
+#include "sim/run/stats.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tool/clip.hpp"
 #include "tool/folder_lock.hpp"
 #include "tool/frame_ranges.hpp"
@@ -18,7 +18,7 @@
 #include "tool/report/page.hpp"
 #include "tool/turntable.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -148,4 +148,4 @@ int command_render(const Options& options) {
     return exit_done;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

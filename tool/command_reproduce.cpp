@@ -12,7 +12,7 @@
 #include "tool/reproduce/claims.hpp"
 #include "tool/version.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -107,4 +107,4 @@ int command_reproduce(const Options& options) {
     return exit_done;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "base/whole_file.hpp"
-#include "sim/explicit_limit.hpp"
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
+#include "sim/step/explicit_limit.hpp"
 #include "tool/clip.hpp"
 #include "tool/failure_bundle.hpp"
 #include "tool/folder_lock.hpp"
@@ -22,7 +22,7 @@
 #include "tool/run_source.hpp"
 #include "tool/scene_list.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -143,4 +143,4 @@ int command_simulate(const Options& options) {
     return for_each_scene(options, [](const Options& one) { return make_run(one, false); });
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

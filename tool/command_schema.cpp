@@ -4,13 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sim/scene/reference.hpp"
-#include "sim/scene/schema.hpp"
-#include "sim/stats.hpp"
+#include "sim/run/stats.hpp"
+#include "sim/scene_file/reference.hpp"
+#include "sim/scene_file/schema.hpp"
 #include "tool/options.hpp"
 #include "tool/report/page_files.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -43,4 +43,4 @@ int command_schema(const Options& options) {
     return exit_done;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -7,14 +7,14 @@
 
 #include "render/png.hpp"
 #include "render/renderer.hpp"
-#include "sim/scene/load.hpp"
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tool/options.hpp"
 #include "tool/render_options.hpp"
 #include "tool/run_folder.hpp"
 #include "tool/view.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -99,4 +99,4 @@ int command_sheet(const Options& options) {
     return exit_done;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -15,7 +15,7 @@
 #include "tool/stability_points.hpp"
 #include "tool/stability_report.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -201,4 +201,4 @@ int command_stability(const Options& options) {
     return options.point >= 0 ? do_piece(options, study) : do_all(options, study);
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -5,10 +5,10 @@
 #include "base/whole_file.hpp"
 #include "render/png.hpp"
 #include "render/renderer.hpp"
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tool/view.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -88,4 +88,4 @@ void write_failure(const RunFolder& folder, const Scene& scene, std::uint64_t sc
     }
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

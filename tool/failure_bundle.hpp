@@ -1,12 +1,13 @@
 #pragma once
 
-#include "sim/failure.hpp"
+#include "sim/model/failure.hpp"
+#include "sim/run/simulate.hpp"
 #include "sim/scene/scene.hpp"
-#include "sim/simulate.hpp"
 #include "tool/clip.hpp"
+#include "tool/names.hpp"
 #include "tool/run_folder.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// Leaves in RUN/failure/ all that is needed to understand why a run stopped, and to go on from there:
 ///   failure.json     which step, criterion, particles and spring; numbers; what to change
@@ -17,4 +18,4 @@ namespace unravel {
 void write_failure(const RunFolder& folder, const Scene& scene, std::uint64_t scene_hash,
                    const Simulation& simulation, const SimulationError& error, const ClipOptions& options);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -10,7 +10,7 @@
 #include "base/file_errors.hpp"
 #include "tool/run_folder.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 FolderLock::FolderLock(const std::filesystem::path& folder) {
     std::error_code error;
@@ -29,4 +29,4 @@ FolderLock::~FolderLock() {
     ::close(descriptor_);
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

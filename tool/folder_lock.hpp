@@ -2,7 +2,9 @@
 
 #include <filesystem>
 
-namespace unravel {
+#include "tool/names.hpp"
+
+namespace unravel::tool {
 
 /// Held while a run writes into a folder, so that a second one pointed there by mistake is told so instead of
 /// mixing its files with the first's. The system lets go of it however the program ends. Where a file system
@@ -19,4 +21,4 @@ private:
     int descriptor_ = -1;
 };
 
-}  // namespace unravel
+}  // namespace unravel::tool

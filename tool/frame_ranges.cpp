@@ -9,7 +9,7 @@
 #include "tool/picture_stamp.hpp"
 #include "tool/render_options.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -139,4 +139,4 @@ void gather_ranges(const Options& options, const Scene& scene, const RunFolder& 
     clip.vouched = true;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

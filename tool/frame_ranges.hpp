@@ -4,10 +4,11 @@
 #include <vector>
 
 #include "tool/clip.hpp"
+#include "tool/names.hpp"
 #include "tool/options.hpp"
 #include "tool/picture_stamp.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// A clip's frames cut into ranges that are drawn apart, by several tasks into one folder. Beside its
 /// pictures each range leaves the stamp that they were drawn with; the tasks share no other file.
@@ -30,4 +31,4 @@ void narrow_to_range(const Options& options, ClipOptions& clip);
 /// one.
 void gather_ranges(const Options& options, const Scene& scene, const RunFolder& folder, ClipOptions& clip);
 
-}  // namespace unravel
+}  // namespace unravel::tool

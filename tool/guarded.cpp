@@ -7,15 +7,15 @@
 #include "base/file_errors.hpp"
 #include "render/gl_context.hpp"
 #include "render/video.hpp"
-#include "sim/explicit_limit.hpp"
-#include "sim/scene/load.hpp"
-#include "sim/step.hpp"
+#include "sim/scene_file/load.hpp"
+#include "sim/step/explicit_limit.hpp"
+#include "sim/step/step.hpp"
 #include "tool/cluster/cluster.hpp"
 #include "tool/options.hpp"
 #include "tool/render_options.hpp"
 #include "tool/run_folder.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -68,4 +68,4 @@ int guarded(const std::function<int()>& command) {
     }
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -7,13 +7,13 @@
 #include <chrono>
 #include <cmath>
 
-#include "sim/explicit_limit.hpp"
-#include "sim/scene/load.hpp"
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
+#include "sim/scene_file/load.hpp"
 #include "sim/solids/sdf.hpp"
+#include "sim/step/explicit_limit.hpp"
 #include "tool/step_to_step.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -257,4 +257,4 @@ HardOutcome run_hard_case(const HardCase& hard, int frames) {
     return out;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/frame_record.hpp"
+#include "sim/run/frame_record.hpp"
 #include "sim/scene/scene.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// What is expected of a hard case.
 enum class Must {
@@ -69,4 +70,4 @@ struct HardOutcome {
 /// tells is then not judged.
 HardOutcome run_hard_case(const HardCase& hard, int frames = 0);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -6,7 +6,7 @@
 #include "base/whole_file.hpp"
 #include "tool/hard_case.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -63,4 +63,4 @@ std::vector<HardCase> read_hard_cases(const std::filesystem::path& file) {
     return cases;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

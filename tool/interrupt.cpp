@@ -5,7 +5,7 @@
 #include <csignal>
 #include <initializer_list>
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -40,4 +40,4 @@ int InterruptWatch::signal() {
     return received;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

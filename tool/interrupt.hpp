@@ -1,6 +1,8 @@
 #pragma once
 
-namespace unravel {
+#include "tool/names.hpp"
+
+namespace unravel::tool {
 
 /// From construction on, INT, TERM and HUP ask for a stop instead of ending the program; a second one of them
 /// ends it. Writing to a closed pipe is an error, not a signal.
@@ -12,4 +14,4 @@ public:
     static int signal();
 };
 
-}  // namespace unravel
+}  // namespace unravel::tool

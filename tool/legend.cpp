@@ -12,7 +12,7 @@
 #include "tool/view.hpp"
 #include "tool/wire_colors.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -200,4 +200,4 @@ void Legend::add(const FrameRecord& record, Image& picture) {
         }
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

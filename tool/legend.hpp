@@ -3,10 +3,11 @@
 #include <memory>
 
 #include "render/image.hpp"
-#include "sim/frame_record.hpp"
+#include "sim/run/frame_record.hpp"
 #include "sim/scene/scene.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// What the colours of the component view mean, and the frame's numbers, in the lower left corner of its
 /// pictures.
@@ -26,4 +27,4 @@ private:
     std::unique_ptr<Page> page_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::tool

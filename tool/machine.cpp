@@ -7,7 +7,7 @@
 #include <array>
 #include <fstream>
 
-namespace unravel {
+namespace unravel::tool {
 
 std::string host_name() {
     std::array<char, 256> name{};
@@ -27,4 +27,4 @@ std::string processor_name() {
     return name;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -2,7 +2,9 @@
 
 #include <string>
 
-namespace unravel {
+#include "tool/names.hpp"
+
+namespace unravel::tool {
 
 /// This machine's name, "unknown" where it has none.
 std::string host_name();
@@ -10,4 +12,4 @@ std::string host_name();
 /// The model of its processor as the system tells it, without commas: what times may be compared by.
 std::string processor_name();
 
-}  // namespace unravel
+}  // namespace unravel::tool

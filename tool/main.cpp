@@ -16,7 +16,7 @@
 
 namespace {
 
-using namespace unravel;
+using namespace unravel::tool;
 
 void add_run_options(CLI::App& command, Options& o) {
     command.add_option(

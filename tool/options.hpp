@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace unravel {
+#include "tool/names.hpp"
+
+namespace unravel::tool {
 
 /// Exit codes, each of its own kind.
 enum Exit : int {
@@ -88,4 +90,4 @@ int command_check(const Options& options);
 int command_stability(const Options& options);
 int command_doctor(const Options& options);
 
-}  // namespace unravel
+}  // namespace unravel::tool

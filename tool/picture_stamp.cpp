@@ -7,12 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/hash.hpp"
 #include "base/whole_file.hpp"
-#include "sim/frame_record.hpp"
-#include "sim/scene/load.hpp"
+#include "sim/run/frame_record.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tool/version.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace fs = std::filesystem;
 
@@ -157,4 +158,4 @@ std::string renderer_in(const std::string& stamp) {
     return json.is_object() ? json.value("renderer", "") : std::string();
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -5,9 +5,10 @@
 
 #include "sim/scene/scene.hpp"
 #include "tool/clip.hpp"
+#include "tool/names.hpp"
 #include "tool/run_folder.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// All that a picture depends on besides the simulated frame: cameras, look, size, sampling and renderer. Two
 /// runs with equal stamps draw the same bytes.
@@ -41,4 +42,4 @@ void keep_ranges(const RunFolder& folder, const std::string& view, const std::st
 std::string without_renderer(const std::string& stamp);
 std::string renderer_in(const std::string& stamp);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace unravel {
+namespace unravel::tool {
 
 std::string duration_text(double seconds) {
     const long s = std::lround(std::max(seconds, 0.0));
@@ -57,4 +57,4 @@ void Progress::finish() {
     open_ = false;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

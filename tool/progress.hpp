@@ -4,7 +4,9 @@
 #include <optional>
 #include <string>
 
-namespace unravel {
+#include "tool/names.hpp"
+
+namespace unravel::tool {
 
 /// Frame (or what else is counted) k of n, time for each and time left: one line that is rewritten on a
 /// terminal, a plain line now and then elsewhere. Goes to standard error. The rate is that of frames done by
@@ -33,4 +35,4 @@ private:
 /// "1 h 02 min", "3 min 05 s", "12 s".
 std::string duration_text(double seconds);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <string_view>
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -127,4 +127,4 @@ ClipOptions clip_options_of(const Options& options, Scene& scene) {
     return clip;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -1,9 +1,10 @@
 #pragma once
 
 #include "tool/clip.hpp"
+#include "tool/names.hpp"
 #include "tool/options.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// A command line that contradicts itself or names what does not exist. Exit code 2.
 class UsageError : public std::runtime_error {
@@ -14,4 +15,4 @@ public:
 /// Reads the options that concern pictures, and applies --size to the scene. Throws UsageError.
 ClipOptions clip_options_of(const Options& options, Scene& scene);
 
-}  // namespace unravel
+}  // namespace unravel::tool

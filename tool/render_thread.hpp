@@ -6,7 +6,9 @@
 #include <future>
 #include <thread>
 
-namespace unravel {
+#include "tool/names.hpp"
+
+namespace unravel::tool {
 
 /// The thread that owns a GL context for life. Work is done in the order it is given.
 class RenderThread {
@@ -41,4 +43,4 @@ private:
     std::thread thread_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::tool

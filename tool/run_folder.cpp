@@ -8,15 +8,16 @@
 #include <vector>
 
 #include "base/file_errors.hpp"
+#include "base/hash.hpp"
 #include "base/whole_file.hpp"
-#include "sim/frame_record.hpp"
 #include "sim/mesh/mesh_solid.hpp"
+#include "sim/run/frame_record.hpp"
 #include "sim/scene/limits.hpp"
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tool/clip_view.hpp"
 #include "tool/version.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace fs = std::filesystem;
 
@@ -221,7 +222,7 @@ std::string why_unusable(const RunFolder& folder, int frame, std::uint64_t scene
     std::uint64_t made_from = 0;
     std::memcpy(&made_from, bytes.data() + record_magic.size(), sizeof made_from);
     if (made_from == scene_hash) return fmt::format("frame {} is damaged: {}", frame, again);
-    if (made_from == unravel::scene_hash(load_scene(folder.scene())))
+    if (made_from == tool::scene_hash(load_scene(folder.scene())))
         return "what --set changes is not only how the scene looks: that needs a run of its own, "
                "`unravel run SCENE --set ... -o DIR`";
     return fmt::format(
@@ -231,4 +232,4 @@ std::string why_unusable(const RunFolder& folder, int frame, std::uint64_t scene
         version_of_run(folder), version());
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

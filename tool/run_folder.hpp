@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/frame_record.hpp"
+#include "sim/run/frame_record.hpp"
 #include "sim/scene/scene.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// Where a run's files are. Every one of them appears whole or not at all.
 struct RunFolder {
@@ -66,4 +67,4 @@ std::string why_unusable(const RunFolder& folder, int frame, std::uint64_t scene
 /// Hash of the scene as run. Only what changes the simulation counts.
 std::uint64_t scene_hash(const Scene& scene);
 
-}  // namespace unravel
+}  // namespace unravel::tool

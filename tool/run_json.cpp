@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "sim/effects.hpp"
+#include "sim/model/effects.hpp"
 #include "tool/machine.hpp"
 #include "tool/version.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -94,4 +94,4 @@ Json run_json(const Scene& scene, const Simulation& simulation, const RunSource&
     return json;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

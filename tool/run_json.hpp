@@ -5,13 +5,14 @@
 
 #include "sim/scene/scene.hpp"
 #include "tool/clip.hpp"
+#include "tool/names.hpp"
 #include "tool/run_source.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// The content of run.json. `status` is "complete", "interrupted" or "failed"; `clip` is null where nothing
 /// was drawn.
 nlohmann::ordered_json run_json(const Scene& scene, const Simulation& simulation, const RunSource& source,
                                 int threads, const std::string& status, const ClipReport* clip);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "base/whole_file.hpp"
-#include "sim/stats.hpp"
+#include "sim/run/stats.hpp"
 #include "tool/interrupt.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -72,4 +72,4 @@ void RunSource::write_stats() const {
     file.commit();
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

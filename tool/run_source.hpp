@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "base/spool.hpp"
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
+#include "tool/names.hpp"
 #include "tool/run_folder.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// The frames of a run, from its cache as far as that goes, then simulated and cached. The same frames come
 /// out either way, bit for bit.
@@ -50,4 +51,4 @@ private:
     std::chrono::steady_clock::time_point stats_written_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "base/whole_file.hpp"
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tool/cluster/cluster.hpp"
 #include "tool/folder_lock.hpp"
 #include "tool/guarded.hpp"
@@ -16,7 +16,7 @@
 #include "tool/render_options.hpp"
 #include "tool/run_folder.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace fs = std::filesystem;
 
@@ -196,4 +196,4 @@ int for_each_scene(const Options& options, int (*one)(const Options&)) {
     return one(single);
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -3,9 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "tool/names.hpp"
 #include "tool/options.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// Does a command (run, simulate) that is for one scene for every scene named: one after another, as tasks of
 /// a cluster, or only the one that --point says. A scene that fails is named, and the others are done.
@@ -17,4 +18,4 @@ int for_each_scene(const Options& options, int (*one)(const Options&));
 /// complete can be told from one with other pictures.
 std::vector<std::string> command_of_run(const Options& options);
 
-}  // namespace unravel
+}  // namespace unravel::tool

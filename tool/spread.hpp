@@ -2,7 +2,9 @@
 
 #include <vector>
 
-namespace unravel {
+#include "tool/names.hpp"
+
+namespace unravel::tool {
 
 /// Median, and the whole spread, of repeated measurements.
 struct Spread {
@@ -13,4 +15,4 @@ struct Spread {
 /// Of at least one value.
 Spread spread_of(std::vector<double> values);
 
-}  // namespace unravel
+}  // namespace unravel::tool

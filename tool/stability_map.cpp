@@ -7,11 +7,11 @@
 
 #include "base/whole_file.hpp"
 #include "render/png.hpp"
-#include "sim/scene/load.hpp"
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tool/plot/plot.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -111,4 +111,4 @@ std::vector<std::string> write_stability_maps(const std::filesystem::path& folde
     return pictures;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

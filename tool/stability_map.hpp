@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "sim/scene/scene.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// One run of the map: a stiffness, a step, and whether the run stayed bounded.
 struct MapCell {
@@ -30,4 +31,4 @@ StabilityMap make_stability_map(const std::filesystem::path& scene, const std::s
 std::vector<std::string> write_stability_maps(const std::filesystem::path& folder,
                                               const std::vector<StabilityMap>& maps);
 
-}  // namespace unravel
+}  // namespace unravel::tool

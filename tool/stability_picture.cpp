@@ -9,7 +9,7 @@
 #include "render/renderer.hpp"
 #include "tool/view.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -72,4 +72,4 @@ bool draw_hard_case(const GlContext& context, const HardOutcome& outcome, const 
     return true;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

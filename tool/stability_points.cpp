@@ -5,11 +5,12 @@
 
 #include <limits>
 
+#include "base/hash.hpp"
 #include "base/whole_file.hpp"
-#include "sim/frame_record.hpp"
+#include "sim/run/frame_record.hpp"
 #include "tool/version.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace fs = std::filesystem;
 
@@ -126,4 +127,4 @@ std::optional<StabilityMap> read_map_piece(const fs::path& output, const fs::pat
     }
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

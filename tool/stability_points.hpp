@@ -3,10 +3,11 @@
 #include <filesystem>
 #include <optional>
 
+#include "tool/names.hpp"
 #include "tool/stability_map.hpp"
 #include "tool/stability_report.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// Pieces of a stability study that were done apart: each is a file under the case's or the integrator's own
 /// name, which also says what it was made from. Another scene, other bounds or another version of the tool
@@ -26,4 +27,4 @@ std::optional<StabilityMap> read_map_piece(const std::filesystem::path& output,
 inline constexpr const char* mapped_integrators[] = {"explicit",       "imex",     "adaptive-imex",
                                                      "adaptive-imex2", "implicit", "bdf2"};
 
-}  // namespace unravel
+}  // namespace unravel::tool

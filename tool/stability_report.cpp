@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -178,4 +178,4 @@ std::string stability_html(const std::vector<HardLine>& lines, const std::vector
     return out + (maps.empty() ? "" : "</main>") + "</html>\n";
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "tool/hard_case.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// A case with what became of it.
 struct HardLine {
@@ -30,4 +31,4 @@ std::string stability_markdown(const std::vector<HardLine>& lines);
 /// A page with each case's picture and numbers, and the maps' pictures.
 std::string stability_html(const std::vector<HardLine>& lines, const std::vector<std::string>& maps);
 
-}  // namespace unravel
+}  // namespace unravel::tool

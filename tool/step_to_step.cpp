@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace unravel {
+namespace unravel::tool {
 
 StepToStep::Shares StepToStep::next(const Simulation& simulation) {
     Shares shares;
@@ -38,4 +38,4 @@ StepToStep::Shares StepToStep::next(const Simulation& simulation) {
     return shares;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

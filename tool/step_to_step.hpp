@@ -3,9 +3,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// What changes from one step to the next although nothing should: springs that turn between explicit and
 /// implicit (flicker), contacts that friction catches or lets go (chatter), contacts that open or close
@@ -24,4 +25,4 @@ private:
     std::vector<Contact> contacts_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -2,7 +2,7 @@
 
 #include "render/renderer.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 std::vector<Image> draw_still(const Scene& scene, const ClothModel& model, const FrameRecord& record,
                               const std::vector<Rgb>& colors, const DeviceChoice& device) {
@@ -19,4 +19,4 @@ std::vector<Image> draw_still(const Scene& scene, const ClothModel& model, const
     return pictures;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -9,7 +9,7 @@
 #include "tool/picture_stamp.hpp"
 #include "tool/view.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -79,7 +79,7 @@ Studio::Studio(const Scene& scene, const ClothModel& model, const Placement& pla
 void Studio::plan_shots() {
     for (std::size_t v = 0; v < options_.views.size(); ++v) {
         std::vector<std::size_t>& of_view = view_shots_.emplace_back();
-        const std::vector<Shot> shots = unravel::shots_of(options_.views[v]);
+        const std::vector<Shot> shots = tool::shots_of(options_.views[v]);
         for (const Shot& shot : shots) {
             const auto found = std::ranges::find(shots_, shot);
             of_view.push_back(static_cast<std::size_t>(found - shots_.begin()));
@@ -255,4 +255,4 @@ bool Studio::take_over(const Passage& passage, std::size_t view, Image& picture)
            picture.height == scene_.clip.size[1];
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

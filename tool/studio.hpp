@@ -12,9 +12,10 @@
 #include "render/renderer.hpp"
 #include "tool/clip.hpp"
 #include "tool/legend.hpp"
+#include "tool/names.hpp"
 #include "tool/render_thread.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// Frames between source and end of the pipeline at any time: one per stage and one to take up unevenness.
 inline constexpr std::size_t frames_under_way = 5;
@@ -98,4 +99,4 @@ private:
 /// The encoder's settings for a view of these options.
 VideoSettings video_settings(const Scene& scene, const ClipOptions& options, Layout layout);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -76,4 +76,4 @@ void FineGrid::colors(std::span<const Rgb> particles, std::span<Rgb> out) const 
                 particles[patch_->at((i + half) / factor_, (j + half) / factor_)];
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "render/draw_scene.hpp"
-#include "sim/model.hpp"
+#include "sim/model/model.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// Times that each cell of a cloth is drawn as four: what the look says, or enough for smooth outlines and
 /// light.
@@ -32,4 +33,4 @@ private:
     std::vector<Vec3f> rows_refined_;  // (particles[1] × columns_): fine along u, coarse along v
 };
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -5,7 +5,7 @@
 
 #include "tool/view.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 void make_turntable(Scene& scene, ClipOptions& options, double seconds, int frame) {
     const double t = frame_time(scene, frame);
@@ -32,4 +32,4 @@ FrameSource turntable_source(const ClipOptions& options, const FrameRecord& reco
     };
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

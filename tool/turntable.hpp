@@ -1,8 +1,9 @@
 #pragma once
 
 #include "tool/clip.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// Makes a clip's options those of one turn, `seconds` long, of all its cameras about one frame that stands
 /// still. The last picture is one step short of the first, so that the video loops; cameras' own movement is
@@ -12,4 +13,4 @@ void make_turntable(Scene& scene, ClipOptions& options, double seconds, int fram
 /// The frames of a turntable: `record` again and again, numbered from 0.
 FrameSource turntable_source(const ClipOptions& options, const FrameRecord& record);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -1,9 +1,9 @@
 #include "tool/version.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 const char* version() {
     return UNRAVEL_VERSION;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -1,8 +1,10 @@
 #pragma once
 
-namespace unravel {
+#include "tool/names.hpp"
+
+namespace unravel::tool {
 
 /// The tool's version, from CMakeLists.txt.
 const char* version();
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -9,12 +9,12 @@
 #include "render/png.hpp"
 #include "sim/mesh/mesh_cloth.hpp"
 #include "sim/mesh/mesh_solid.hpp"
-#include "sim/mesh/surface.hpp"
+#include "sim/model/surface.hpp"
 #include "sim/solids/motion.hpp"
 #include "tool/subdivision.hpp"
 #include "tool/wire_colors.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -381,4 +381,4 @@ CameraView camera_at(const Scene& scene, const Camera& camera, double t) {
     return view;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

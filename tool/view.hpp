@@ -4,11 +4,12 @@
 
 #include "render/draw_scene.hpp"
 #include "render/palette.hpp"
-#include "sim/frame_record.hpp"
-#include "sim/model.hpp"
+#include "sim/model/model.hpp"
+#include "sim/run/frame_record.hpp"
 #include "sim/scene/scene.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// What the renderer needs of a scene for the whole clip. `textures`: the folder that the scene's pictures
 /// are named relative to; empty: cloths show their weaves. Throws InputError where a picture can't be read.
@@ -45,4 +46,4 @@ CameraView camera_at(const Scene& scene, const Camera& camera, double t);
 /// "#rrggbb"; anything else throws std::invalid_argument (a checked scene holds nothing else).
 Rgb parse_color(const std::string& text);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -4,7 +4,7 @@
 
 #include "render/palette.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -113,4 +113,4 @@ void color_wires(const Look& look, const ClothModel& model, const FrameRecord& r
     }
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "render/draw_scene.hpp"
-#include "sim/frame_record.hpp"
-#include "sim/model.hpp"
+#include "sim/model/model.hpp"
+#include "sim/run/frame_record.hpp"
 #include "sim/scene/scene.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// Colours that stand for one thing each, apart for the colour-blind (Okabe & Ito 2008).
 inline constexpr Rgb implicit_color{230, 159, 0}, explicit_color{86, 180, 233}, inactive_color{104, 108, 118};
@@ -34,4 +35,4 @@ std::size_t drawn_springs(const ClothModel& model, Show show);
 void color_wires(const Look& look, const ClothModel& model, const FrameRecord& record,
                  const std::vector<Rgb>& components, DrawFrame& out);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "sim/kernels/grid_springs.hpp"
+#include "sim/forces/grid_springs.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// Where a particle's springs are, and who is at their other ends: by lists, or, for the stretch and shear
 /// springs of cloths that are all grids, by stencil.
@@ -75,4 +75,4 @@ inline Adjacency adjacency_of(std::vector<GridSprings> grids) {
     return adjacency;
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

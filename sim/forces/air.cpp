@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/random.hpp"
+#include "sim/scene/random.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
 
@@ -88,4 +88,4 @@ void add_air(const AirCells& air, std::span<const Vec3> force, double h, std::sp
     });
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

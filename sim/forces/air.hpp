@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "sim/math.hpp"
+#include "sim/scene/math.hpp"
 #include "sim/scene/scene.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// Cells of the cloth on which the air acts, and which of them each particle borders. Empty unless the scene
 /// has wind.
@@ -42,4 +42,4 @@ void air_forces(const AirCells& air, const Wind& wind, double t, double h, std::
 /// Adds each particle's quarter of its cells' forces, times h.
 void add_air(const AirCells& air, std::span<const Vec3> force, double h, std::span<Vec3> impulse);
 
-}  // namespace unravel
+}  // namespace unravel::sim

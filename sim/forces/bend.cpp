@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace unravel {
+namespace unravel::sim {
 
 double arc_force(double s) {
     return arc_force_within(std::clamp(s, 0.0, 1.0));
@@ -124,4 +124,4 @@ void bend_jacobians(const BendSprings& springs, const BendLimit& limit, std::spa
     });
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

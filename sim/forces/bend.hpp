@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "sim/forces/extension.hpp"
-#include "sim/math.hpp"
+#include "sim/scene/math.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// Bend springs between interlaced particles (distance 2 along rows, columns and diagonals) after Choi & Ko,
 /// "Stable but responsive cloth" (2002), Sec. 4.2. Where the strip between its ends is shorter than flat, it
@@ -99,4 +99,4 @@ struct ImplicitBend {
 void bend_jacobians(const BendSprings& springs, const BendLimit& limit, std::span<const Vec3> x,
                     ImplicitBend& out);
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -2,7 +2,7 @@
 
 #include <bit>
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
 
@@ -59,4 +59,4 @@ void Coefficients::code() {
     *this = std::move(coded);
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -6,7 +6,7 @@
 #include <ranges>
 #include <vector>
 
-namespace unravel {
+namespace unravel::sim {
 
 /// One number for each spring of a list. The springs of a grid are alike but for borders and regions: while
 /// no more than 256 different numbers are in the list, a byte for each spring says which it has; beyond, as
@@ -48,4 +48,4 @@ private:
     std::vector<std::uint8_t> code_;  // (springs); empty: by spring
 };
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace unravel {
+namespace unravel::sim {
 
 void ExtensionForces::resize(std::size_t springs) {
     force.resize(springs);
@@ -98,4 +98,4 @@ Adjacency adjacency_of(std::size_t particles, std::span<const std::uint32_t> i,
     return adjacency;
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -8,13 +8,13 @@
 
 #include "sim/forces/adjacency.hpp"
 #include "sim/forces/coefficients.hpp"
-#include "sim/math.hpp"
+#include "sim/scene/math.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// Stretch and shear springs: they act only in extension (Choi & Ko 2002; paper Sec. 2.1). Stretch springs
 /// come first, cloth by cloth; those of a grid cloth lie direction by direction
-/// (sim/kernels/grid_springs.hpp).
+/// (sim/forces/grid_springs.hpp).
 struct ExtensionSprings {
     std::vector<std::uint32_t> i, j;  ///< (springs) particles, i < j
     Coefficients rest;                ///< (springs) L [m]
@@ -108,4 +108,4 @@ inline double extension_energy(double length, double rest, double stiffness) {
     return e > 0 ? 0.5 * stiffness * e * e : 0.0;
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

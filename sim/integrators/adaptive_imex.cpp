@@ -1,6 +1,6 @@
 #include "sim/integrators/scheme.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 // IMEX Euler (paper Eq. 6) split by the stability criterion of each spring in each step (Sec. 3.5, Eq. 7).
 const Scheme adaptive_imex{"adaptive-imex", 1,
@@ -9,4 +9,4 @@ const Scheme adaptive_imex{"adaptive-imex", 1,
                            },
                            begin_euler};
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -1,6 +1,6 @@
 #include "sim/integrators/scheme.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 // Semi-implicit backward Euler (paper Eq. 5; Baraff & Witkin 1998): one linearisation per step.
 const Scheme backward_euler{.name = "implicit",
@@ -20,4 +20,4 @@ void begin_euler(const ClothState& state, double h, Stage& stage) {
     stage.v = stage.v_at = state.v;
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -1,6 +1,6 @@
 #include "sim/integrators/scheme.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
 
@@ -72,4 +72,4 @@ void begin_bdf2(const ClothState& state, double h, Stage& stage) {
     stage.v_at = own.v_at;
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -1,6 +1,6 @@
 #include "sim/integrators/scheme.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 // IMEX Euler (paper Eq. 6) split by the kind of spring: stretch implicit, shear explicit (Eberhardt et al.
 // 2000, Hauth et al. 2002).
@@ -10,4 +10,4 @@ const Scheme fixed_imex{"imex", 1,
                         },
                         begin_euler};
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -1,6 +1,6 @@
 #include "sim/integrators/scheme.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 // Forward–backward Euler (paper Eq. 3): v' = v + h M⁻¹ f(x, v), x' = x + h v'. With no implicit spring the
 // stage of Eq. (5) is just that, and its matrix is M.
@@ -10,4 +10,4 @@ const Scheme forward_backward_euler{"explicit", 1,
                                     },
                                     begin_euler};
 
-}  // namespace unravel
+}  // namespace unravel::sim

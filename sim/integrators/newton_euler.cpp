@@ -1,6 +1,6 @@
 #include "sim/integrators/scheme.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 // Backward Euler as it stands (paper Eq. 4): the nonlinear system is solved by Newton's method, of which
 // Eq. (5) is the first iteration (Hauth et al. 2002).
@@ -14,4 +14,4 @@ const Scheme newton_euler{.name = "newton",
                           .iterates = true,
                           .implicit_bend = true};
 
-}  // namespace unravel
+}  // namespace unravel::sim

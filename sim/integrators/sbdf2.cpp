@@ -1,6 +1,6 @@
 #include "sim/integrators/scheme.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 // The second-order pair of adaptive IMEX: backward differentiation for the stiff springs, extrapolation for
 // the soft ones (as SBDF2 of Ascher, Ruuth & Wetton 1995, but for the extrapolation, see bdf2.cpp; variable
@@ -16,4 +16,4 @@ const Scheme sbdf2{.name = "adaptive-imex2",
                    .multistep = true,
                    .explicit_bound = 3.2};
 
-}  // namespace unravel
+}  // namespace unravel::sim

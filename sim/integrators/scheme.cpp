@@ -1,6 +1,6 @@
 #include "sim/integrators/scheme.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 const Scheme& scheme_of(Integrator choice) {
     switch (choice) {
@@ -23,4 +23,4 @@ const Scheme& scheme_of(Integrator choice) {
     return adaptive_imex;
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "sim/forces/extension.hpp"
-#include "sim/math.hpp"
+#include "sim/model/state.hpp"
+#include "sim/scene/math.hpp"
 #include "sim/scene/scene.hpp"
-#include "sim/state.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// What every scheme of the paper's Sec. 3 comes down to: one derivative at the end of the step, of weight h̃,
 /// on top of what is known,
@@ -69,4 +69,4 @@ void begin_euler(const ClothState& state, double h, Stage& stage);
 /// The stage of the variable-step two-step backward differentiation formula; see bdf2.cpp.
 void begin_bdf2(const ClothState& state, double h, Stage& stage);
 
-}  // namespace unravel
+}  // namespace unravel::sim

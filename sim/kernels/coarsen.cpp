@@ -3,7 +3,7 @@
 
 #include "sim/kernels/stencil_rows.hpp"
 
-namespace unravel::UNRAVEL_ISA {
+namespace unravel::sim::UNRAVEL_ISA {
 
 namespace {
 
@@ -18,8 +18,8 @@ UNRAVEL_INLINE f8 even_lanes(const float* v) {
     return __builtin_shufflevector(Lanes<f8>::load(v), Lanes<f8>::load(v + 8), 0, 2, 4, 6, 8, 10, 12, 14);
 }
 UNRAVEL_INLINE Sym3<f8> even_blocks(Springs, const float* p, int pitch) {
-    return as_matrix(
-        SpringBlock<f8>{even_lanes(p), {even_lanes(p + pitch), even_lanes(p + 2 * pitch), even_lanes(p + 3 * pitch)}});
+    return as_matrix(SpringBlock<f8>{
+        even_lanes(p), {even_lanes(p + pitch), even_lanes(p + 2 * pitch), even_lanes(p + 3 * pitch)}});
 }
 UNRAVEL_INLINE Sym3<f8> even_blocks(Blocks, const float* p, int pitch) {
     return {even_lanes(p),
@@ -196,4 +196,4 @@ void coarsen(const StencilGrid& g, const float* D, const float* active, const St
 extern const CoarsenKernels coarsen_kernels;
 const CoarsenKernels coarsen_kernels = {{coarsen<Fine>, coarsen<Coarse>}};
 
-}  // namespace unravel::UNRAVEL_ISA
+}  // namespace unravel::sim::UNRAVEL_ISA

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
-
 
 // The recursive residual aims a little lower than the tolerance, so that the true one seldom misses it.
 constexpr double aim = 0.95;
@@ -109,7 +108,8 @@ struct GridCg {
     // x += d, d = 0
     void take_correction() {
         sweep([&](int begin, int end) {
-            for (std::ptrdiff_t k = row(begin, 3) - StencilGrid::margin; k < row(end, 3) - StencilGrid::margin; ++k) {
+            for (std::ptrdiff_t k = row(begin, 3) - StencilGrid::margin;
+                 k < row(end, 3) - StencilGrid::margin; ++k) {
                 const auto n = static_cast<std::size_t>(k);
                 system.x[n] += static_cast<double>(ws.d[n]);
                 ws.d[n] = 0;
@@ -182,4 +182,4 @@ bool solve_on_grid(GridSystem& system, bool multigrid, std::uint32_t patience, c
     return std::isfinite(residual);
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

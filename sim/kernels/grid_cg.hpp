@@ -5,9 +5,9 @@
 
 #include "sim/kernels/grid_system.hpp"
 #include "sim/kernels/line_multigrid.hpp"
-#include "sim/solve.hpp"
+#include "sim/linear/solve.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// Memory of solve_on_grid(), kept between steps.
 struct GridCgWorkspace {
@@ -23,9 +23,9 @@ inline constexpr double grid_cg_tolerance = 1e-6;
 
 /// Conjugate gradients on a component in grid form, in single precision with sums in double, preconditioned
 /// by P (sim/kernels/grid_system.hpp) or by a multigrid cycle. The iterate is x plus a correction; when its
-/// recursive residual meets the stopping rule of sim/solve.hpp, the residual is evaluated anew in double, and
-/// the iteration starts again from there unless that one meets it too. Sums run over rows of the grid, in
-/// order: the same bits for any number of threads, and for any instruction set.
+/// recursive residual meets the stopping rule of sim/linear/solve.hpp, the residual is evaluated anew in
+/// double, and the iteration starts again from there unless that one meets it too. Sums run over rows of the
+/// grid, in order: the same bits for any number of threads, and for any instruction set.
 ///
 /// After `patience` iterations the other of the two takes over, once: a system that blocks would take long
 /// for gets its multigrid after all; and where springs come and go so fast that coarse grids tell little of
@@ -35,4 +35,4 @@ inline constexpr double grid_cg_tolerance = 1e-6;
 bool solve_on_grid(GridSystem& system, bool multigrid, std::uint32_t patience, const SolveOptions& options,
                    GridCgWorkspace& ws, ComponentSolve& out);
 
-}  // namespace unravel
+}  // namespace unravel::sim

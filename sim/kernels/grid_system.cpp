@@ -4,12 +4,11 @@
 #include <array>
 #include <cmath>
 
-#include "sim/kernels/couple_row.hpp"
+#include "sim/rows/couple_row.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
-
 
 // Orthonormal columns that span the range of a projection of rank 1 or 2; the second may be zero.
 void free_directions(const Mat3& S, double* out) {
@@ -281,4 +280,4 @@ void load_grid_system(const GridSprings& springs, const SpringFamily& family, co
     });
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -4,11 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "sim/kernels/grid_springs.hpp"
+#include "sim/forces/grid_springs.hpp"
 #include "sim/kernels/stencil_kernels.hpp"
-#include "sim/system.hpp"
+#include "sim/linear/system.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// A component's system A Δv = b (Eq. 5) on the rows of the grid that it covers, never assembled: a spring is
 /// a I + w wᵀ, four floats,
@@ -51,4 +51,4 @@ void load_grid_system(const GridSprings& springs, const SpringFamily& family, co
                       const Components& components, std::uint32_t c, const Constraints& constraints,
                       std::span<const Vec3> guess, double h, GridSystem& out);
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -3,7 +3,7 @@
 
 #include "sim/kernels/stencil_rows.hpp"
 
-namespace unravel::UNRAVEL_ISA {
+namespace unravel::sim::UNRAVEL_ISA {
 
 namespace {
 
@@ -104,4 +104,4 @@ void close_rings(const StencilGrid& g, int begin, int end, float* z) {
 extern const TransferKernels transfer_kernels;
 const TransferKernels transfer_kernels = {restrict_to, prolong_add, close_rings};
 
-}  // namespace unravel::UNRAVEL_ISA
+}  // namespace unravel::sim::UNRAVEL_ISA

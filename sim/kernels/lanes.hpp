@@ -8,7 +8,7 @@
 
 #define UNRAVEL_INLINE __attribute__((always_inline)) inline
 
-namespace unravel {
+namespace unravel::sim {
 
 using f8 = float __attribute__((vector_size(32)));
 using d4 = double __attribute__((vector_size(32)));
@@ -214,4 +214,4 @@ UNRAVEL_INLINE void transpose(f8 (&r)[8]) {
     }
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
 
@@ -195,4 +195,4 @@ void LineMultigrid::apply(const float* r, float* z) {
     cycle(0, r, z);
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

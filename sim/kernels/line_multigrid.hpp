@@ -4,7 +4,7 @@
 
 #include "sim/kernels/grid_system.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// A multigrid cycle as preconditioner of a large component. A spring of cloth is 50 to 1,000 times stiffer
 /// along its thread than across, so that neither relaxing node by node nor coarsening alone gets anywhere;
@@ -46,4 +46,4 @@ private:
     std::size_t depth_ = 0;
 };
 
-}  // namespace unravel
+}  // namespace unravel::sim

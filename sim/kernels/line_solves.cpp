@@ -3,7 +3,7 @@
 
 #include "sim/kernels/stencil_rows.hpp"
 
-namespace unravel::UNRAVEL_ISA {
+namespace unravel::sim::UNRAVEL_ISA {
 
 namespace {
 
@@ -159,4 +159,4 @@ const LineKernels line_kernels = {
     {solve_u<Fine>, solve_u<Coarse>},
 };
 
-}  // namespace unravel::UNRAVEL_ISA
+}  // namespace unravel::sim::UNRAVEL_ISA

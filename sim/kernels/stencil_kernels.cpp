@@ -1,6 +1,6 @@
 #include "sim/kernels/stencil_kernels.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace plain {
 extern const SweepKernels sweep_kernels;
@@ -29,4 +29,4 @@ const StencilKernels& stencil_kernels() {
     return has_avx2 ? wide : plain_stencil_kernels();
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -3,14 +3,14 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace unravel {
+namespace unravel::sim {
 
 /// One grid as the kernels see it, coarse or fine. A field of c numbers per node holds, for each row of the
 /// grid, c runs of `pitch` floats, one per number: number k of node (i, j) is at [(j·c + k)·pitch + margin +
 /// i]. All that lies outside the grid is zero in every field, but for the column on either side of it where a
 /// tube closes. Rows are allocated in eights.
 ///
-/// What joins nodes are the four directions of sim/kernels/grid_springs.hpp, each block held by its upper
+/// What joins nodes are the four directions of sim/forces/grid_springs.hpp, each block held by its upper
 /// left node: `couplings` has 4 × (4 or 6) numbers per node, direction by direction; a block that leaves the
 /// grid is zero.
 struct StencilGrid {
@@ -106,4 +106,4 @@ const StencilKernels& stencil_kernels();
 /// The one for any x86-64.
 const StencilKernels& plain_stencil_kernels();
 
-}  // namespace unravel
+}  // namespace unravel::sim

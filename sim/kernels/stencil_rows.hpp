@@ -8,7 +8,7 @@
 #include "sim/kernels/lanes.hpp"
 #include "sim/kernels/stencil_kernels.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 constexpr int margin = StencilGrid::margin;
 
@@ -145,4 +145,4 @@ UNRAVEL_INLINE Sym3<d4> inverse_of(const StencilGrid& g, Sym3<d4> D, const std::
     return m;
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

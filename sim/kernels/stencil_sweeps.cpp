@@ -3,7 +3,7 @@
 
 #include "sim/kernels/stencil_rows.hpp"
 
-namespace unravel::UNRAVEL_ISA {
+namespace unravel::sim::UNRAVEL_ISA {
 
 namespace {
 
@@ -295,4 +295,4 @@ const SweepKernels sweep_kernels = {
     direction, advance, residual, {defect<Fine>, defect<Coarse>}, {diagonal<Fine>, diagonal<Coarse>},
 };
 
-}  // namespace unravel::UNRAVEL_ISA
+}  // namespace unravel::sim::UNRAVEL_ISA

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
 
@@ -215,4 +215,4 @@ void check_solid_mesh(const ObjMesh& mesh, std::vector<MeshFault>& faults, std::
     if (faults.empty()) check.outward();
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

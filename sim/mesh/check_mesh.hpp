@@ -4,7 +4,7 @@
 
 #include "sim/mesh/obj.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// Everything that keeps a mesh from being cloth, each with its vertices or faces (numbered from 1, as in the
 /// file), its line and a fix: no faces, vertices that no face uses or that lie on one another, faces that
@@ -18,4 +18,4 @@ void check_solid_mesh(const ObjMesh& mesh, std::vector<MeshFault>& faults, std::
 /// Area of a face: of a quad that is not flat, half the cross product of its diagonals.
 double face_area(const std::vector<Vec3>& positions, const ObjMesh::Face& face);
 
-}  // namespace unravel
+}  // namespace unravel::sim

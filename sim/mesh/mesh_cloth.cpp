@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
 
@@ -181,4 +181,4 @@ std::vector<double> vertex_areas(const MeshCloth& mesh) {
     return areas;
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -9,7 +9,7 @@
 
 #include "sim/mesh/obj.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// A cloth's mesh as the simulator uses it. A cell is a quad of the file, two triangles of it that make a
 /// nearly rectangular quad between them (so that a triangulated grid is the grid), or a triangle that found
@@ -47,4 +47,4 @@ Vec3 from_file(const Vec3& x, double scale, UpAxis up);
 /// Area that belongs to each vertex: a fourth of its quads, a third of its triangles. (vertices) [m²]
 std::vector<double> vertex_areas(const MeshCloth& mesh);
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace unravel {
+namespace unravel::sim {
 
 void MeshSolid::positions_at(double t, std::vector<Vec3>& out) const {
     if (!deforms()) {
@@ -19,4 +19,4 @@ void MeshSolid::positions_at(double t, std::vector<Vec3>& out) const {
     for (std::size_t v = 0; v < a.size(); ++v) out[v] = a[v] + share * (b[v] - a[v]);
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

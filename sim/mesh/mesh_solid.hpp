@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/math.hpp"
+#include "sim/mesh/mesh_tree.hpp"
 #include "sim/mesh/obj.hpp"
-#include "sim/solids/mesh_tree.hpp"
+#include "sim/scene/math.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// A body that cloth meets, as a mesh: at rest, and where it deforms also its samples in time.
 struct MeshSolid {
@@ -26,4 +26,4 @@ struct MeshSolid {
     void positions_at(double t, std::vector<Vec3>& out) const;
 };
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -8,7 +8,7 @@
 
 #include "sim/scene/limits.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
 
@@ -250,4 +250,4 @@ ObjMesh parse_obj(std::string_view text, std::vector<MeshFault>& faults, std::si
     return ObjParser(text, faults, most).parse();
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -9,7 +9,7 @@
 
 #include "sim/scene/scene.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// Something wrong with a mesh: where in its file, what, and what would be right.
 struct MeshFault {
@@ -43,4 +43,4 @@ struct ObjMesh {
 /// curves and surfaces are refused, materials, normals and smoothing groups passed over.
 ObjMesh parse_obj(std::string_view text, std::vector<MeshFault>& faults, std::size_t most = 8);
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
 
@@ -57,4 +57,4 @@ std::string read_pc2(std::span<const std::uint8_t> bytes, std::size_t points, st
     return {};
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

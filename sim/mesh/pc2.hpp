@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/math.hpp"
+#include "sim/scene/math.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// A PC2 point cache ("POINTCACHE2", version 1): a header, then the positions of every point for every
 /// sample as little-endian floats.
@@ -26,4 +26,4 @@ std::vector<std::uint8_t> pc2_header(const Pc2Header& header);
 std::string read_pc2(std::span<const std::uint8_t> bytes, std::size_t points, std::size_t limit,
                      Pc2Header& header, std::vector<std::vector<Vec3>>& out);
 
-}  // namespace unravel
+}  // namespace unravel::sim

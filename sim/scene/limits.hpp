@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace unravel {
+namespace unravel::sim {
 
 inline constexpr std::size_t max_scene_bytes = 4u << 20;  // of the file
 inline constexpr int max_particles = 4'000'000;           // in all cloths together, and in one direction
@@ -19,4 +19,4 @@ inline constexpr std::size_t max_list = 4096;      // cloths, solids, pins, keyf
 inline constexpr std::size_t max_problems = 1000;  // kept; a file that is no scene has no end of them
 inline constexpr std::size_t max_key_parts = 16;   // of a dotted key
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace unravel {
+namespace unravel::sim {
 
 using Vec3 = Eigen::Vector3d;
 using Vec2 = Eigen::Vector2d;
@@ -177,7 +177,7 @@ struct Solid {
 };
 
 /// `automatic` takes explicit substeps or adaptive IMEX, whichever is counted cheaper
-/// (sim/choose_integrator.hpp).
+/// (sim/step/choose_integrator.hpp).
 enum class Integrator { explicit_, implicit, newton, imex, adaptive_imex, bdf2, adaptive_imex2, automatic };
 /// `automatic` chooses per component. `stencil_block` is the constrained block, and `multigrid` a cycle by
 /// lines, in single precision on the stencil of a grid; what lies on no grid gets the constrained block on
@@ -316,4 +316,4 @@ struct Scene {
     Look look;
 };
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
 
@@ -77,4 +77,4 @@ Pose solid_pose(const Solid& solid, double t) {
     return pose;
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -4,7 +4,7 @@
 
 #include "sim/scene/scene.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// Rigid placement: local frame to world.
 using Pose = Eigen::Isometry3d;
@@ -27,4 +27,4 @@ Pose solid_pose(const Solid& solid, double t);
 /// at t = 0.
 Vec3 moved_point(const Motion& motion, const Vec3& pivot, const Vec3& start, double t);
 
-}  // namespace unravel
+}  // namespace unravel::sim

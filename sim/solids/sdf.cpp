@@ -6,7 +6,7 @@
 
 #include "sim/mesh/mesh_solid.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
 
@@ -127,4 +127,4 @@ double bounding_radius(const Solid& solid) {
     return std::numeric_limits<double>::infinity();
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -2,10 +2,10 @@
 
 #include <vector>
 
+#include "sim/mesh/mesh_tree.hpp"
 #include "sim/scene/scene.hpp"
-#include "sim/solids/mesh_tree.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// Signed distance [m] from a point to a solid's surface, negative inside, and its gradient (the outward unit
 /// normal of the nearest surface point). `local` is in the solid's own frame: centre at the origin,
@@ -43,4 +43,4 @@ SurfacePoint nearest_surface(const Solid& solid, const DeformedSolid* deformed, 
 /// Radius of the smallest ball about the solid's centre that holds it [m]; infinite for a plane.
 double bounding_radius(const Solid& solid);
 
-}  // namespace unravel
+}  // namespace unravel::sim

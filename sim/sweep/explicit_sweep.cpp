@@ -9,7 +9,7 @@
 
 #include "sim/sweep/group_sweep.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
 
@@ -139,4 +139,4 @@ void ExplicitSweep::run(const ClothModel& model, const ClothState& state, int su
     }
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

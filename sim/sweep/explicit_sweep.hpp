@@ -2,12 +2,12 @@
 
 #include <memory>
 
-#include "sim/contact.hpp"
-#include "sim/model.hpp"
-#include "sim/report.hpp"
-#include "sim/state.hpp"
+#include "sim/constraints/contact.hpp"
+#include "sim/model/model.hpp"
+#include "sim/model/report.hpp"
+#include "sim/model/state.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// Forward–backward Euler (paper Eq. 3) on grids, many short steps at once. Nothing is coupled, so a substep
 /// needs no system: one pass over the rows of a cloth evaluates every spring once, hands its force to both
@@ -44,4 +44,4 @@ private:
     std::unique_ptr<SweepMemory> memory_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -2,7 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
-namespace unravel {
+namespace unravel::sim {
 
 void take_rows(std::span<const Vec3> x, std::span<const Vec3> v, GridRows& cloth) {
     cloth.state.resize(cloth.rows() * 6 * cloth.stride);
@@ -19,4 +19,4 @@ void take_rows(std::span<const Vec3> x, std::span<const Vec3> v, GridRows& cloth
     });
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

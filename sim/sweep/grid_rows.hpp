@@ -3,16 +3,16 @@
 #include <span>
 #include <vector>
 
-#include "sim/kernels/sweep_row.hpp"
-#include "sim/model.hpp"
+#include "sim/model/model.hpp"
+#include "sim/rows/sweep_row.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// Columns beside a row's own that repeat it across a tube's seam; a spring reaches over two.
 inline constexpr std::size_t seam_margin = 4;
 
 /// Positions and velocities of a grid cloth row by row, one array per coordinate, for kernels that work along
-/// rows (sim/kernels/sweep_row.hpp).
+/// rows (sim/rows/sweep_row.hpp).
 struct GridRows {
     ClothPatch patch;
     std::size_t stride = 0;     ///< doubles per coordinate of a row
@@ -47,4 +47,4 @@ struct GridRows {
 /// Fills the rows with the cloth's share of x and v, (particles).
 void take_rows(std::span<const Vec3> x, std::span<const Vec3> v, GridRows& cloth);
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace unravel {
+namespace unravel::sim {
 
 void RowTable::build(std::span<const double> values, std::size_t width) {
     offset_.clear();
@@ -57,4 +57,4 @@ void build_tables(const ClothModel& model, const GridSprings& grid, const BendLi
     tables.inverse_mass.build(inverse, width);
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "sim/forces/bend.hpp"
-#include "sim/model.hpp"
+#include "sim/model/model.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// A coefficient of every place on a grid, row by row; rows that equal the one before share its memory, so
 /// that the few numbers of an even cloth stay in the first cache.
@@ -86,4 +86,4 @@ void tabulate(const GridSprings& grid, const SpringRows& rows, const F& f, RowTa
     table.build(values, grid.nu);
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <thread>
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
 
@@ -140,4 +140,4 @@ void GroupSweep::advance(std::size_t row, const SweepSubstep& substep, const Row
     }
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -4,7 +4,7 @@
 
 #include "sim/sweep/swept_cloth.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// Rows by which a substep follows the one before it.
 inline constexpr std::size_t sweep_lag = 2;
@@ -52,4 +52,4 @@ private:
     std::size_t levels_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -6,7 +6,7 @@
 
 #include "sim/solids/sdf.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
 
@@ -142,4 +142,4 @@ void settle_contacts(const ClothModel& model, const SolidSubstep& substep, const
     }
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -2,11 +2,11 @@
 
 #include <vector>
 
-#include "sim/contact.hpp"
-#include "sim/kernels/sweep_row.hpp"
-#include "sim/model.hpp"
+#include "sim/constraints/contact.hpp"
+#include "sim/model/model.hpp"
+#include "sim/rows/sweep_row.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// Contact of a stretch of one row with solids, within the explicit sweep. Most of a cloth is far from every
 /// solid most of the time: each stretch remembers a distance that it is known to keep, shortened by what it
@@ -64,4 +64,4 @@ void settle_contacts(const ClothModel& model, const SolidSubstep& substep, const
 /// may be inside a solid.
 bool keeps_clear(const SolidSubstep& substep, const RowStretch& stretch, double h, RowContacts& contacts);
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -8,7 +8,7 @@
 #include "sim/forces/air.hpp"
 #include "sim/sweep/grid_tables.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 // Rows of a band: what a band evaluates once more, two rows at most, should be little of it.
 constexpr std::size_t band_rows = 16;
@@ -264,4 +264,4 @@ void RowForces::gather(const ClothModel& model, std::span<const std::uint8_t> ta
     }
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -5,10 +5,10 @@
 
 #include "sim/forces/extension.hpp"
 #include "sim/integrators/scheme.hpp"
-#include "sim/model.hpp"
+#include "sim/model/model.hpp"
 #include "sim/sweep/grid_rows.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// Forces of a step, gathered by particle, where every cloth is a grid: the same as extension_forces(),
 /// bend_forces() and air_forces() give spring by spring and cell by cell, evaluated along rows with no index
@@ -63,4 +63,4 @@ private:
     std::unique_ptr<RowForcesMemory> memory_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -2,10 +2,10 @@
 
 #include <tbb/parallel_for.h>
 
-#include "sim/pins.hpp"
+#include "sim/constraints/pins.hpp"
 #include "sim/solids/motion.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 namespace {
 
@@ -94,4 +94,4 @@ void give_state(SweptCloth& cloth, ClothState& next, Constraints& constraints, s
     }
 }
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -3,12 +3,12 @@
 #include <span>
 #include <vector>
 
-#include "sim/state.hpp"
+#include "sim/model/state.hpp"
 #include "sim/sweep/grid_rows.hpp"
 #include "sim/sweep/grid_tables.hpp"
 #include "sim/sweep/row_contact.hpp"
 
-namespace unravel {
+namespace unravel::sim {
 
 /// A cloth as the explicit sweep has it: row by row, one array per coordinate.
 
@@ -46,4 +46,4 @@ void take_state(const ClothState& state, SweptCloth& cloth);
 /// Gives it back: x, v and contacts to `next`, what was constrained in the last substep to `constraints`.
 void give_state(SweptCloth& cloth, ClothState& next, Constraints& constraints, std::uint32_t& touches);
 
-}  // namespace unravel
+}  // namespace unravel::sim

@@ -17,7 +17,7 @@ tolerance = 2e-6  # metres: floats, and one sum of them in glTF
 
 
 def cached(frame):
-    """Positions of a state file (sim/frame_record.cpp): a list of doubles after 65 bytes."""
+    """Positions of a state file (sim/run/frame_record.cpp): a list of doubles after 65 bytes."""
     with open(os.path.join(run, "cache", "frame_%04d.state" % frame), "rb") as file:
         data = file.read()
     (count,) = struct.unpack_from("<Q", data, 65)

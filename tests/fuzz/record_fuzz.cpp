@@ -10,9 +10,11 @@
 #include <vector>
 
 #include "base/file_errors.hpp"
-#include "sim/frame_record.hpp"
+#include "base/hash.hpp"
+#include "sim/run/frame_record.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     constexpr std::uint64_t scene = 7;

@@ -12,9 +12,10 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string input(reinterpret_cast<const char*>(data), size);

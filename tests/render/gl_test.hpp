@@ -7,6 +7,8 @@
 
 namespace unravel::testing {
 
+using namespace render;
+
 /// A context for a test whose name says GL, or nothing, said aloud, where the machine has no renderer at all.
 inline std::optional<GlContext> open_renderer() {
     try {

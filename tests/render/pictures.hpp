@@ -4,6 +4,8 @@
 
 namespace unravel::testing {
 
+using namespace render;
+
 /// Nothing but a background, in both views.
 inline DrawScene empty_scene(Rgb background) {
     DrawScene scene;

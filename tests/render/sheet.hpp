@@ -7,6 +7,8 @@
 
 namespace unravel::testing {
 
+using namespace render;
+
 /// A wavy sheet of n × n particles that hangs over a sphere on the ground: a drape without a simulation.
 struct Sheet {
     DrawScene scene;

@@ -4,6 +4,7 @@
 #include "tests/render/gl_test.hpp"
 
 using namespace unravel;
+using namespace unravel::render;
 
 TEST_CASE("device_choice_reads_its_four_forms_and_refuses_others") {
     CHECK(parse_device_choice("auto").kind == DeviceChoice::Kind::automatic);

@@ -11,6 +11,7 @@
 #include "tests/render/sheet.hpp"
 
 using namespace unravel;
+using namespace unravel::render;
 
 namespace {
 

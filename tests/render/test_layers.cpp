@@ -8,6 +8,7 @@
 #include "tests/render/sheet.hpp"
 
 using namespace unravel;
+using namespace unravel::render;
 using testing::empty_scene, testing::pixel;
 
 TEST_CASE("GL_a_transparent_frame_has_the_opaque_ones_colours_and_alpha_where_shapes_are") {

@@ -5,6 +5,7 @@
 #include "tests/render/sheet.hpp"
 
 using namespace unravel;
+using namespace unravel::render;
 
 TEST_CASE("normals_of_a_sphere_point_outwards") {
     // The sheet's cap lies on a sphere around (0, 0.42, 0), its front outside.

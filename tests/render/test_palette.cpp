@@ -6,6 +6,7 @@
 #include "render/palette.hpp"
 
 using namespace unravel;
+using namespace unravel::render;
 
 namespace {
 

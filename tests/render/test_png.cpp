@@ -11,6 +11,7 @@
 #include "tests/base/temporary_folder.hpp"
 
 using namespace unravel;
+using namespace unravel::render;
 
 namespace {
 

@@ -17,6 +17,7 @@
 #include "tests/base/temporary_folder.hpp"
 
 using namespace unravel;
+using namespace unravel::render;
 namespace fs = std::filesystem;
 
 namespace {

@@ -2,10 +2,12 @@
 
 // Small scenes that several tests share.
 
+#include "sim/run/simulate.hpp"
 #include "sim/scene/scene.hpp"
-#include "sim/simulate.hpp"
 
 namespace unravel::testing {
+
+using namespace sim;
 
 inline Cloth sheet(int n, double height) {
     Cloth cloth;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 using namespace unravel;
+using namespace unravel::sim;
 
 TEST_CASE("drag acts along a cell's normal, lift along the cell") {
     AirCells air;

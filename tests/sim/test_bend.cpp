@@ -7,6 +7,7 @@
 #include "sim/forces/bend.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

@@ -8,6 +8,7 @@
 #include "sim/forces/coefficients.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

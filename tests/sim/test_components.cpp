@@ -4,10 +4,11 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "sim/components.hpp"
-#include "sim/random.hpp"
+#include "sim/linear/components.hpp"
+#include "sim/scene/random.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

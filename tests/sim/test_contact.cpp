@@ -5,12 +5,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 #include "sim/solids/sdf.hpp"
 #include "source_dir.hpp"
 #include "tests/sim/scenes.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 using namespace unravel::testing;
 
 namespace {

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/scene/presets.hpp"
-#include "sim/self_collision.hpp"
+#include "sim/scene_file/presets.hpp"
+#include "sim/self_collision/self_collision.hpp"
 #include "tests/sim/scenes.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 using namespace unravel::testing;
 
 namespace {

@@ -1,12 +1,13 @@
-#include "sim/explicit_limit.hpp"
+#include "sim/step/explicit_limit.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "sim/scene/load.hpp"
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
+#include "sim/scene_file/load.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

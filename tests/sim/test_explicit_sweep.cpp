@@ -5,11 +5,12 @@
 
 #include <catch2/catch.hpp>
 
-#include "sim/choose_integrator.hpp"
-#include "sim/explicit_limit.hpp"
+#include "sim/step/choose_integrator.hpp"
+#include "sim/step/explicit_limit.hpp"
 #include "tests/sim/scenes.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 using namespace unravel::testing;
 
 namespace {

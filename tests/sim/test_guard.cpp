@@ -1,14 +1,15 @@
-#include "sim/guard.hpp"
+#include "sim/run/guard.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "sim/frame_record.hpp"
-#include "sim/scene/load.hpp"
-#include "sim/simulate.hpp"
+#include "sim/run/frame_record.hpp"
+#include "sim/run/simulate.hpp"
+#include "sim/scene_file/load.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

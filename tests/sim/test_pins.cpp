@@ -6,6 +6,7 @@
 #include "tests/sim/scenes.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 using namespace unravel::testing;
 
 TEST_CASE("a keyframed pin has its particles where its motion has them, at every step") {

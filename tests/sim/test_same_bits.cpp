@@ -6,12 +6,13 @@
 
 #include <catch2/catch.hpp>
 
-#include "sim/frame_record.hpp"
-#include "sim/scene/load.hpp"
-#include "sim/simulate.hpp"
+#include "sim/run/frame_record.hpp"
+#include "sim/run/simulate.hpp"
+#include "sim/scene_file/load.hpp"
 #include "source_dir.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

@@ -5,12 +5,13 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "sim/scene/load.hpp"
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
+#include "sim/scene_file/load.hpp"
 #include "sim/solids/sdf.hpp"
 #include "source_dir.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

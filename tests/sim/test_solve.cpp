@@ -5,10 +5,11 @@
 #include <Eigen/QR>
 #include <catch2/catch.hpp>
 
-#include "sim/random.hpp"
-#include "sim/solve.hpp"
+#include "sim/linear/solve.hpp"
+#include "sim/scene/random.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

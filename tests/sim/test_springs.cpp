@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "sim/forces/extension.hpp"
-#include "sim/random.hpp"
+#include "sim/scene/random.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

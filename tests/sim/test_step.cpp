@@ -4,10 +4,11 @@
 
 #include <catch2/catch.hpp>
 
-#include "sim/stage.hpp"
+#include "sim/step/stage.hpp"
 #include "tests/sim/scenes.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 using namespace unravel::testing;
 
 TEST_CASE("one thread equals many, bit for bit") {

@@ -6,10 +6,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Dense>
 
-#include "sim/random.hpp"
-#include "sim/solve.hpp"
+#include "sim/linear/solve.hpp"
+#include "sim/scene/random.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

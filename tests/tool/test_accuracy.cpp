@@ -4,13 +4,14 @@
 #include <cmath>
 #include <filesystem>
 
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
 #include "tool/studies/accuracy_contrast.hpp"
 #include "tool/studies/accuracy_study.hpp"
 #include "tool/studies/accuracy_verdict.hpp"
 #include "tool/studies/accuracy_video.hpp"
 
 using namespace unravel;
+using namespace unravel::tool;
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 #include "source_dir.hpp"
 #include "tests/base/temporary_folder.hpp"
 #include "tests/json_schema.hpp"
@@ -18,6 +18,7 @@
 #include "tool/report/page_files.hpp"
 
 using namespace unravel;
+using namespace unravel::tool;
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include "tool/studies/accuracy_verdict.hpp"
 
 using namespace unravel;
+using namespace unravel::tool;
 
 TEST_CASE("indices are written as sbatch takes them", "[cluster]") {
     CHECK(index_ranges({}).empty());

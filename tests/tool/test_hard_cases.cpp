@@ -8,6 +8,7 @@
 #include "tool/hard_case.hpp"
 
 using namespace unravel;
+using namespace unravel::tool;
 
 namespace {
 

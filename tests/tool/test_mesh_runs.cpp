@@ -4,11 +4,12 @@
 
 #include "base/whole_file.hpp"
 #include "sim/mesh/mesh_cloth.hpp"
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tests/sim/mesh/mesh_scene.hpp"
 #include "tool/run_folder.hpp"
 
 using namespace unravel;
+using namespace unravel::tool;
 
 TEST_CASE("a run with meshes can be moved, and is not gone on with once a mesh has changed", "[mesh][run]") {
     const std::string toml = "[cloth]\nname = \"shirt\"\nmesh = \"mesh.obj\"\n";

@@ -5,6 +5,7 @@
 #include "tests/sim/scenes.hpp"
 
 using namespace unravel;
+using namespace unravel::tool;
 
 namespace {
 

@@ -8,11 +8,12 @@
 #include <cstring>
 
 #include "base/whole_file.hpp"
-#include "sim/frame_record.hpp"
-#include "sim/scene/load.hpp"
+#include "sim/run/frame_record.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tests/base/temporary_folder.hpp"
 
 using namespace unravel;
+using namespace unravel::tool;
 
 namespace {
 

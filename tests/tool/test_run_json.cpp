@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "sim/scene/load.hpp"
-#include "sim/stats.hpp"
+#include "sim/run/stats.hpp"
+#include "sim/scene_file/load.hpp"
 #include "source_dir.hpp"
 #include "tests/base/temporary_folder.hpp"
 #include "tests/json_schema.hpp"
@@ -15,6 +15,7 @@
 #include "tool/report/page_files.hpp"
 
 using namespace unravel;
+using namespace unravel::tool;
 
 namespace {
 

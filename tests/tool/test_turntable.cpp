@@ -6,6 +6,7 @@
 #include "tool/view.hpp"
 
 using namespace unravel;
+using namespace unravel::tool;
 
 TEST_CASE("a_turntable_goes_once_round_a_frame_that_stands_still") {
     Scene scene = testing::drape(5);

@@ -7,6 +7,7 @@
 #include "tool/wire_colors.hpp"
 
 using namespace unravel;
+using namespace unravel::tool;
 
 namespace {
 

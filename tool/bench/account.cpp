@@ -4,7 +4,7 @@
 #include <limits>
 #include <numeric>
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -76,4 +76,4 @@ std::vector<LevelWork> levels_of_grid(int columns, int rows, int depth, int band
     return levels;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
-namespace unravel {
+#include "tool/names.hpp"
+
+namespace unravel::tool {
 
 /// A stage that is a loop over particles or springs.
 struct StageWork {
@@ -54,4 +56,4 @@ std::vector<LevelWork> levels_of_grid(int columns, int rows, int depth, int band
 /// The model in words, for the output.
 extern const char* const account_words;
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -11,7 +11,7 @@
 #include "tool/bench/sized_scene.hpp"
 #include "tool/bench/speed_report.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace fs = std::filesystem;
 
@@ -54,4 +54,4 @@ int command_bench_speed(const Options& options) {
     return exit_done;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace unravel {
+namespace unravel::tool {
 
 double PowerLaw::at(double n) const {
     return factor * std::pow(n, exponent);
@@ -28,4 +28,4 @@ PowerLaw fit_power(std::span<const Measured> points, double from) {
     return law;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -3,7 +3,9 @@
 #include <limits>
 #include <span>
 
-namespace unravel {
+#include "tool/names.hpp"
+
+namespace unravel::tool {
 
 /// t = factor · n^exponent.
 struct PowerLaw {
@@ -22,4 +24,4 @@ struct Measured {
 /// nothing is known.
 PowerLaw fit_power(std::span<const Measured> points, double from = 0);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "sim/preconditioner.hpp"
+#include "sim/linear/preconditioner.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -77,4 +77,4 @@ FoldedSystem fold(const StepSystem& step, const System& rows) {
     return out;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -3,9 +3,10 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "sim/solve_components.hpp"
+#include "sim/step/solve_components.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// A step's system (Eq. 9) as any solver of linear equations takes it: three scalar rows per particle that is
 /// not fully constrained, S folded in for those that are partly:
@@ -18,7 +19,7 @@ struct FoldedSystem {
     std::vector<std::uint32_t> particles;  ///< (block rows)
     std::vector<Vec3> prescribed;          ///< (block rows) (I − S) z [m/s]
     std::vector<Mat3>
-        measure;  ///< (block rows) P⁻¹ S of sim/preconditioner.hpp: the norm of its stopping rule
+        measure;  ///< (block rows) P⁻¹ S of sim/linear/preconditioner.hpp: the norm of its stopping rule
 
     std::size_t rows() const { return particles.size(); }
     /// ‖b' − A' y‖ / ‖b'‖ in the norm that SolveOptions::tolerance is measured in.
@@ -30,4 +31,4 @@ struct FoldedSystem {
 /// Folds what a step has assembled in rows for all of its components.
 FoldedSystem fold(const StepSystem& step, const System& rows);
 
-}  // namespace unravel
+}  // namespace unravel::tool

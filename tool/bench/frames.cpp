@@ -15,13 +15,13 @@
 #include "render/palette.hpp"
 #include "render/png.hpp"
 #include "render/renderer.hpp"
-#include "sim/scene/load.hpp"
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
+#include "sim/scene_file/load.hpp"
 #include "source_dir.hpp"
 #include "tool/clip.hpp"
 #include "tool/view.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -237,4 +237,4 @@ int command_bench_frames(const Options& options) {
     return exit_done;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

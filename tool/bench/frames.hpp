@@ -6,9 +6,10 @@
 
 #include "render/gl_context.hpp"
 #include "sim/scene/scene.hpp"
+#include "tool/names.hpp"
 #include "tool/options.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// A stage of the way from scene to videos, per frame.
 struct FrameStage {
@@ -40,4 +41,4 @@ std::string frame_bench_text(const FrameBench& bench);
 /// JSON.
 int command_bench_frames(const Options& options);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -7,7 +7,7 @@
 
 #include "tool/bench/speed_report.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -177,4 +177,4 @@ std::vector<Goal> judge_goals(const SpeedBench& bench) {
     return goals;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

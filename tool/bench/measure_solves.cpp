@@ -7,7 +7,7 @@
 
 #include "tool/bench/peers.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -229,4 +229,4 @@ void measure_solves(MeasuredProblem& problem, const SpeedPlan& plan, const Speed
     Solves(problem, plan, smaller, allowance, record).run();
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

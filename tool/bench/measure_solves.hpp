@@ -1,8 +1,9 @@
 #pragma once
 
 #include "tool/bench/measured_problem.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// Every way to solve the problem's captured system to its tolerance, repetitions interleaved, and what a row
 /// and iteration costs each. Direct solvers are left out beyond what memory bears, and every way that would
@@ -10,4 +11,4 @@ namespace unravel {
 void measure_solves(MeasuredProblem& problem, const SpeedPlan& plan, const SpeedBench& smaller,
                     const Allowance& allowance, SizeRecord& record);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -91,4 +91,4 @@ void measure_steps(MeasuredProblem& problem, const SpeedPlan& plan, const SpeedB
     }
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -4,8 +4,9 @@
 #include <utility>
 
 #include "tool/bench/measured_problem.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// The stages of a step, by name, in their order.
 inline constexpr std::array<std::pair<const char*, double StageTimes::*>, 8> step_stages{
@@ -27,4 +28,4 @@ std::vector<int> thread_counts(int all);
 void measure_steps(MeasuredProblem& problem, const SpeedPlan& plan, const SpeedBench& smaller,
                    const Allowance& allowance, SizeRecord& record);
 
-}  // namespace unravel
+}  // namespace unravel::tool

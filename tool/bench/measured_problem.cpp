@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -147,4 +147,4 @@ FoldedSystem MeasuredProblem::folded() {
     return fold(step, ws.system);
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -2,12 +2,13 @@
 
 #include <chrono>
 
-#include "sim/simulate.hpp"
-#include "sim/stage.hpp"
+#include "sim/run/simulate.hpp"
+#include "sim/step/stage.hpp"
 #include "tool/bench/folded_system.hpp"
 #include "tool/bench/speed.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// What is left of a budget.
 class Allowance {
@@ -83,4 +84,4 @@ private:
     double rows_ = 0, entries_ = 0;
 };
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -134,4 +134,4 @@ MemoryRecord account_memory(const Simulation& simulation, double peak) {
     return record;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

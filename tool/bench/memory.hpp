@@ -1,9 +1,10 @@
 #pragma once
 
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
 #include "tool/bench/speed.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// Resident memory from its making on, at its highest [bytes]. Where the system can't forget an earlier peak,
 /// the present size counts.
@@ -21,4 +22,4 @@ private:
 /// beyond them; peak and rest of large problems only.
 MemoryRecord account_memory(const Simulation& simulation, double peak);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -11,7 +11,7 @@
 
 #include "bench/cholmod_solve.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -89,4 +89,4 @@ std::string cholmod_missing() {
            "cmake --preset release and build again";
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

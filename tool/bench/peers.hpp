@@ -4,8 +4,9 @@
 #include <string>
 
 #include "tool/bench/folded_system.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// What a solver of linear equations took for a folded system, on one thread.
 struct PeerSolve {
@@ -27,4 +28,4 @@ std::optional<PeerSolve> solve_by_cholmod(const FoldedSystem& system);
 /// Whether CHOLMOD is there, and if not why.
 std::string cholmod_missing();
 
-}  // namespace unravel
+}  // namespace unravel::tool

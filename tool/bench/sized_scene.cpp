@@ -6,10 +6,10 @@
 #include <charconv>
 #include <cmath>
 
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tool/render_options.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 std::vector<std::size_t> parse_sizes(const std::string& text) {
     constexpr std::size_t least = 25, most = 4'000'000;
@@ -48,4 +48,4 @@ Scene scene_of_size(const std::filesystem::path& file, std::vector<std::string> 
     return load_scene(file, overrides);
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

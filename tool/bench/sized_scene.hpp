@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "sim/scene/scene.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// Numbers of particles from "2500,10000,40000": ascending, each once. Throws UsageError with what is wrong.
 std::vector<std::size_t> parse_sizes(const std::string& text);
@@ -19,4 +20,4 @@ std::array<int, 2> particles_near(std::size_t n, const std::array<int, 2>& of);
 /// cloth is no single grid.
 Scene scene_of_size(const std::filesystem::path& file, std::vector<std::string> overrides, std::size_t n);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -14,7 +14,7 @@
 #include "tool/bench/triad.hpp"
 #include "tool/machine.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -182,4 +182,4 @@ SpeedBench measure_speed(const SpeedPlan& plan) {
     return bench;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -7,13 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "sim/report.hpp"
+#include "sim/model/report.hpp"
 #include "sim/scene/scene.hpp"
 #include "tool/bench/account.hpp"
 #include "tool/bench/fit.hpp"
+#include "tool/names.hpp"
 #include "tool/spread.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// A way to step, by name: "adaptive-imex/auto", "explicit".
 struct StepKind {
@@ -113,4 +114,4 @@ PowerLaw step_law(const SpeedBench& bench, double StageTimes::*stage, int thread
 
 std::vector<Goal> judge_goals(const SpeedBench& bench);
 
-}  // namespace unravel
+}  // namespace unravel::tool

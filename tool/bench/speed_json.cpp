@@ -3,7 +3,7 @@
 #include "tool/bench/measure_steps.hpp"
 #include "tool/bench/speed_report.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -96,4 +96,4 @@ Json speed_json(const SpeedBench& bench) {
     return json;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

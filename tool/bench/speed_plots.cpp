@@ -6,7 +6,7 @@
 #include "tool/bench/measure_steps.hpp"
 #include "tool/bench/speed_report.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -160,4 +160,4 @@ std::vector<Plot> detail_plots(const SpeedBench& bench) {
     return {iteration_plot(bench), account_plot(bench)};
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "tool/bench/speed.hpp"
+#include "tool/names.hpp"
 #include "tool/plot/plot.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// Goals and steps as tables in Markdown, which read as plain text too: what README shows.
 std::string speed_summary(const SpeedBench& bench);
@@ -26,4 +27,4 @@ std::vector<Plot> detail_plots(const SpeedBench& bench);
 /// "10k", "1M".
 std::string size_name(double particles);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -6,7 +6,7 @@
 #include "tool/bench/measure_steps.hpp"
 #include "tool/bench/speed_report.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -273,4 +273,4 @@ std::string size_name(double n) {
     return n >= 950 ? fmt::format("{:.3g}k", n / 1e3) : fmt::format("{:.0f}", n);
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -7,10 +7,10 @@
 #include <chrono>
 #include <vector>
 
-#include "sim/kernels/versions.hpp"
+#include "sim/rows/versions.hpp"
 #include "tool/spread.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -55,4 +55,4 @@ double triad(std::size_t bytes, int threads) {
     return spread_of(std::move(rates)).median;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

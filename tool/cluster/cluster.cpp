@@ -17,7 +17,7 @@
 #include "tool/progress.hpp"
 #include "tool/run_folder.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace fs = std::filesystem;
 
@@ -239,4 +239,4 @@ int send_bench(const Options& options) {
     return do_on_cluster(options, work);
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "tool/names.hpp"
 #include "tool/options.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// A command's work as a cluster does it: pieces that don't depend on each other, each the very command that
 /// does all of it on one machine with `--point K` behind, and the same command with `--collect` to conclude.
@@ -58,4 +59,4 @@ std::vector<std::string> words_without(const std::vector<std::string>& words,
 /// The user's words that are for every piece: without those about the cluster itself.
 std::vector<std::string> piece_words(const std::vector<std::string>& words);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace fs = std::filesystem;
 
@@ -106,4 +106,4 @@ std::string job_script_text(const JobScript& script, const fs::path& tool, const
     return text + std::string(how_it_ends);
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

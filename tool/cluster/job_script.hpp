@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "tool/names.hpp"
 #include "tool/options.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// One batch script for Slurm: a single job, or an array of tasks that differ in their index only.
 struct JobScript {
@@ -41,4 +42,4 @@ std::string index_ranges(const std::vector<int>& ascending);
 std::string shell_quoted(const std::string& word);
 std::string shell_quoted(const std::vector<std::string>& words);
 
-}  // namespace unravel
+}  // namespace unravel::tool

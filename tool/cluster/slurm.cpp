@@ -14,7 +14,7 @@
 
 extern char** environ;
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -123,4 +123,4 @@ std::optional<int> slurm_exit_code(const std::string& job) {
     return kept.status == 0 ? number_after("\n" + kept.text, "\n") : std::nullopt;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

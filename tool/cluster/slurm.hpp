@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
-namespace unravel {
+#include "tool/names.hpp"
+
+namespace unravel::tool {
 
 /// Slurm's own commands, called as a user would call them. All throw std::runtime_error with the command's
 /// words where it fails or is not there.
@@ -27,4 +29,4 @@ std::vector<QueuedTask> slurm_queue(const std::string& comment);
 /// How a job that has left the queue ended; nothing where the cluster has forgotten it.
 std::optional<int> slurm_exit_code(const std::string& job);
 
-}  // namespace unravel
+}  // namespace unravel::tool

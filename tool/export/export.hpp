@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "render/draw_scene.hpp"
-#include "sim/frame_record.hpp"
-#include "sim/mesh/surface.hpp"
-#include "sim/model.hpp"
+#include "sim/model/model.hpp"
+#include "sim/model/surface.hpp"
+#include "sim/run/frame_record.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// A cached run's geometry on its way into other programs. World: metres, right-handed, y up, as everywhere
 /// here. Frames are read one at a time, so that memory does not grow with the clip.
@@ -61,4 +62,4 @@ std::vector<std::string> file_names(const ClothModel& model);
 std::string obj_text(const std::string& name, const ClothPatch& patch, const ClothSurface& surface,
                      std::span<const Vec3> x, std::size_t vertices, std::size_t uvs);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -13,7 +13,7 @@
 #include "sim/mesh/mesh_cloth.hpp"
 #include "tool/export/export.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -237,4 +237,4 @@ Written export_glb(const ExportSource& source, const std::filesystem::path& fold
     return {file.target()};
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

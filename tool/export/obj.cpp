@@ -8,7 +8,7 @@
 #include "sim/mesh/mesh_cloth.hpp"
 #include "tool/export/export.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -102,4 +102,4 @@ Written export_obj(const ExportSource& source, const std::filesystem::path& fold
     return written;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

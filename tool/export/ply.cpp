@@ -5,7 +5,7 @@
 #include "base/whole_file.hpp"
 #include "tool/export/export.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -64,4 +64,4 @@ Written export_ply(const ExportSource& source, const std::filesystem::path& fold
     return written;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

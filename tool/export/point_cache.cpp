@@ -9,7 +9,7 @@
 #include "sim/mesh/pc2.hpp"
 #include "tool/export/export.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -73,4 +73,4 @@ Written export_point_cache(const ExportSource& source, const std::filesystem::pa
     return written;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-namespace unravel {
+namespace unravel::tool {
 
 Plot size_histogram(const InspectedStep& step) {
     // Ranges 1, 2–3, 4–7, …: sizes reach from one particle to all.
@@ -119,4 +119,4 @@ std::vector<Figure> step_figures(const InspectedStep& step) {
     return figures;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

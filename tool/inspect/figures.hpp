@@ -5,9 +5,10 @@
 
 #include "tool/inspect/inspected.hpp"
 #include "tool/inspect/pattern.hpp"
+#include "tool/names.hpp"
 #include "tool/plot/plot.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// How many components, and how many particles in them, for each range of sizes.
 Plot size_histogram(const InspectedStep& step);
@@ -28,4 +29,4 @@ struct Figure {
 /// All of them drawn.
 std::vector<Figure> step_figures(const InspectedStep& step);
 
-}  // namespace unravel
+}  // namespace unravel::tool

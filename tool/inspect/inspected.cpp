@@ -7,7 +7,7 @@
 #include "tool/render_options.hpp"
 #include "tool/view.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -74,4 +74,4 @@ InspectedStep inspect_step(const Scene& scene, const RunFolder& folder, int fram
     return out;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -2,11 +2,12 @@
 
 #include <vector>
 
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
+#include "tool/names.hpp"
 #include "tool/report/component_table.hpp"
 #include "tool/run_folder.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// One step of a run, simulated again with everything that it computed on the way.
 struct InspectedStep {
@@ -28,4 +29,4 @@ struct InspectedStep {
 /// such step.
 InspectedStep inspect_step(const Scene& scene, const RunFolder& folder, int frame, int step);
 
-}  // namespace unravel
+}  // namespace unravel::tool

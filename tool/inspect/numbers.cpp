@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "sim/stage.hpp"
-#include "sim/system.hpp"
+#include "sim/linear/system.hpp"
+#include "sim/step/stage.hpp"
 #include "tool/render_options.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -148,4 +148,4 @@ Json particle_numbers(const InspectedStep& step, std::int64_t particle) {
     return json;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

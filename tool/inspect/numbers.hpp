@@ -3,8 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "tool/inspect/inspected.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// The step in numbers: counts, solve, components.
 nlohmann::ordered_json step_numbers(const InspectedStep& step);
@@ -15,4 +16,4 @@ nlohmann::ordered_json spring_numbers(const InspectedStep& step, std::int64_t sp
 
 const char* spring_state_name(SpringState state);
 
-}  // namespace unravel
+}  // namespace unravel::tool

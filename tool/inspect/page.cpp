@@ -7,7 +7,7 @@
 #include "tool/report/page_files.hpp"
 #include "tool/report/preview.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -71,7 +71,8 @@ std::string inspect_page(const InspectedStep& step, const std::string& scene_nam
     std::string views_html = views.empty() ? html_text("No views: " + no_views) : "", asked_html, matrices,
                 histograms;
     for (std::size_t k = 0; k < views.size(); ++k)
-        views_html += figure_html("webp", encode_webp(shrink(views[k], inspected_width), 90), names[k], names[k]);
+        views_html +=
+            figure_html("webp", encode_webp(shrink(views[k], inspected_width), 90), names[k], names[k]);
     for (const auto& [heading, numbers] : asked) {
         asked_html += fmt::format("<h2>{}</h2><pre tabindex=\"0\">{}</pre>", html_text(heading),
                                   html_text(numbers.dump(2)));
@@ -95,4 +96,4 @@ std::string inspect_page(const InspectedStep& step, const std::string& scene_nam
                                                  {"components", components}});
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "tool/inspect/figures.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// The inspector's page, whole in itself. `views`: pictures of the step, may be none, then `no_views` says
 /// why. `asked`: numbers of a particle or spring by heading.
@@ -15,4 +16,4 @@ std::string inspect_page(const InspectedStep& step, const std::string& scene_nam
                          const std::vector<Figure>& figures,
                          const std::vector<std::pair<std::string, nlohmann::ordered_json>>& asked);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -8,11 +8,12 @@
 #include "tool/plot/canvas.hpp"
 #include "tool/plot/ticks.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
-constexpr int side = 480, pattern_left = 62, pattern_top = 40, page_width = side + pattern_left + 18, page_height = side + pattern_top + 44;
+constexpr int side = 480, pattern_left = 62, pattern_top = 40, page_width = side + pattern_left + 18,
+              page_height = side + pattern_top + 44;
 // Beyond so many rows a block is less than half a pixel, and dots would only pile up.
 constexpr std::uint32_t most_rows_as_dots = 1200;
 constexpr Rgb block_ink{20, 60, 130}, outline{205, 30, 30}, pattern_grey{90, 96, 106};
@@ -68,7 +69,8 @@ void draw(const Pattern& pattern, Canvas& canvas) {
     for (const auto& [begin, end] : pattern.blocks) {
         // A component too small to be seen would only leave a red stroke.
         if ((end - begin) * unit < 3) continue;
-        canvas.frame(pattern_left + begin * unit, pattern_top + begin * unit, (end - begin) * unit, (end - begin) * unit);
+        canvas.frame(pattern_left + begin * unit, pattern_top + begin * unit, (end - begin) * unit,
+                     (end - begin) * unit);
     }
     canvas.color(pattern_grey);
     canvas.width(1);
@@ -134,4 +136,4 @@ Image pattern_image(const Pattern& pattern, double scale) {
     return canvas_image(page_width, page_height, scale, [&](Canvas& canvas) { draw(pattern, canvas); });
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "render/image.hpp"
-#include "sim/components.hpp"
-#include "sim/model.hpp"
+#include "sim/linear/components.hpp"
+#include "sim/model/model.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// Where a block matrix has its 3×3 blocks (paper Figs 3–5).
 struct Pattern {
@@ -36,4 +37,4 @@ Pattern reordered_pattern(const Pattern& pattern, const Components& components);
 std::string pattern_svg(const Pattern& pattern);
 Image pattern_image(const Pattern& pattern, double scale = 2);
 
-}  // namespace unravel
+}  // namespace unravel::tool

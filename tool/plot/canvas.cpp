@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -195,4 +195,4 @@ Image canvas_image(int width, int height, double scale, const std::function<void
     return image;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

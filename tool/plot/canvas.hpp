@@ -8,8 +8,9 @@
 
 #include "render/draw_scene.hpp"
 #include "render/image.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 enum class Align { start, middle, end };
 
@@ -56,4 +57,4 @@ std::string canvas_svg(int width, int height, const std::function<void(Canvas&)>
 /// The same as a picture, `scale` pixels per unit, on white.
 Image canvas_image(int width, int height, double scale, const std::function<void(Canvas&)>& draw);
 
-}  // namespace unravel
+}  // namespace unravel::tool

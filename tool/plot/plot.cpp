@@ -8,7 +8,7 @@
 #include "tool/plot/canvas.hpp"
 #include "tool/plot/ticks.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -363,4 +363,4 @@ Image plot_image(const Plot& plot, double scale) {
     return plots_image({&plot, 1}, scale);
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

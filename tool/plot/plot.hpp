@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "render/image.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// A value of a series, with the spread of its measurement where it has one. A y that is not finite stands
 /// for a run that broke: it is drawn as a cross at the upper edge. On a log axis, values ≤ 0 are left out.
@@ -65,4 +66,4 @@ std::string plot_svg(const Plot& plot);
 /// The same as a picture, `scale` pixels per unit of its size.
 Image plot_image(const Plot& plot, double scale = 2);
 
-}  // namespace unravel
+}  // namespace unravel::tool

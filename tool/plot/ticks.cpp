@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace unravel {
+namespace unravel::tool {
 
 std::string power_of_ten(int exponent) {
     constexpr std::array<const char*, 10> raised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -57,4 +57,4 @@ std::vector<Tick> log_ticks(double from, double to) {
     return ticks;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
-namespace unravel {
+#include "tool/names.hpp"
+
+namespace unravel::tool {
 
 struct Tick {
     double value = 0;
@@ -20,4 +22,4 @@ std::vector<Tick> log_ticks(double from, double to);
 /// "10⁻³".
 std::string power_of_ten(int exponent);
 
-}  // namespace unravel
+}  // namespace unravel::tool

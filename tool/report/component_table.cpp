@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace unravel {
+namespace unravel::tool {
 
 std::vector<ComponentRow> component_table(const ClothModel& model, std::span<const std::int32_t> component,
                                           std::span<const SpringState> springs,
@@ -41,4 +41,4 @@ std::vector<ComponentRow> component_table(const ClothModel& model, std::span<con
     return rows;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -5,10 +5,11 @@
 #include <vector>
 
 #include "render/draw_scene.hpp"
-#include "sim/frame_record.hpp"
-#include "sim/model.hpp"
+#include "sim/model/model.hpp"
+#include "sim/run/frame_record.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// One component of a step, as tables show it.
 struct ComponentRow {
@@ -26,4 +27,4 @@ std::vector<ComponentRow> component_table(const ClothModel& model, std::span<con
                                           std::span<const ComponentSolve> solves,
                                           std::span<const Rgb> colors);
 
-}  // namespace unravel
+}  // namespace unravel::tool

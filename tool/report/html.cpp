@@ -1,6 +1,6 @@
 #include "tool/report/html.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 std::string html_text(std::string_view text) {
     std::string out;
@@ -46,4 +46,4 @@ void fill_page(std::string_view page, const std::vector<std::pair<std::string_vi
     }
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

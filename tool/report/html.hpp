@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
-namespace unravel {
+#include "tool/names.hpp"
+
+namespace unravel::tool {
 
 /// Text as HTML shows it literally, also within quoted attributes.
 std::string html_text(std::string_view text);
@@ -24,4 +26,4 @@ using LongText = std::function<void(const TextSink&)>;
 void fill_page(std::string_view page, const std::vector<std::pair<std::string_view, LongText>>& values,
                const TextSink& out);
 
-}  // namespace unravel
+}  // namespace unravel::tool

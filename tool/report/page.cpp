@@ -6,14 +6,14 @@
 #include <nlohmann/json.hpp>
 
 #include "base/whole_file.hpp"
-#include "sim/effects.hpp"
-#include "sim/scene/load.hpp"
+#include "sim/model/effects.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tool/progress.hpp"
 #include "tool/report/html.hpp"
 #include "tool/report/page_files.hpp"
 #include "tool/report/series.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -185,4 +185,4 @@ void write_report_page(const Scene& scene, const ClothModel& model, const RunFol
     file.commit();
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

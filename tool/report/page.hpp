@@ -7,15 +7,16 @@
 #include <vector>
 
 #include "render/palette.hpp"
-#include "sim/frame_record.hpp"
-#include "sim/model.hpp"
+#include "sim/model/model.hpp"
+#include "sim/run/frame_record.hpp"
 #include "sim/scene/scene.hpp"
 #include "tool/clip.hpp"
+#include "tool/names.hpp"
 #include "tool/report/component_table.hpp"
 #include "tool/report/preview.hpp"
 #include "tool/run_folder.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// What the page shows of a frame beside its statistics.
 struct PageFrame {
@@ -75,4 +76,4 @@ void write_report_page(const Scene& scene, const ClothModel& model, const RunFol
                        const PageRecorder& recorder, std::span<const StepReport> reports,
                        const Previews& previews, const PageFacts& facts);
 
-}  // namespace unravel
+}  // namespace unravel::tool

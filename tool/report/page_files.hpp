@@ -2,10 +2,12 @@
 
 #include <string_view>
 
-namespace unravel {
+#include "tool/names.hpp"
+
+namespace unravel::tool {
 
 /// A file of tool/report/ or of the chart library by its name, as it was when the tool was built; empty:
 /// there is no such file.
 std::string_view page_file(std::string_view name);
 
-}  // namespace unravel
+}  // namespace unravel::tool

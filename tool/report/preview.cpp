@@ -10,7 +10,7 @@
 
 #include "render/color.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -134,4 +134,4 @@ std::string Previews::text(const std::string& view, int frame) const {
     return text;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

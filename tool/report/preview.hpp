@@ -8,8 +8,9 @@
 
 #include "base/spool.hpp"
 #include "render/image.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// The picture, smaller: every pixel the mean of those it stands for, in linear light. `width` not above the
 /// picture's own; the height keeps the shape.
@@ -52,4 +53,4 @@ private:
     std::map<std::string, std::map<int, Place>> pictures_;
 };
 
-}  // namespace unravel
+}  // namespace unravel::tool

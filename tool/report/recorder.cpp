@@ -3,7 +3,7 @@
 #include "tool/report/page.hpp"
 #include "tool/view.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -40,4 +40,4 @@ void PageRecorder::see(const FrameRecord& record) {
     frames_.push_back(std::move(frame));
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

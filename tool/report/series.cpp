@@ -7,7 +7,7 @@
 
 #include "tool/progress.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -175,4 +175,4 @@ std::vector<std::string> page_warnings(const Scene& scene, const std::vector<Pag
     return warnings;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/report.hpp"
+#include "sim/model/report.hpp"
+#include "tool/names.hpp"
 #include "tool/report/page.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// The page's plots and numbers: a list over frames for each quantity. Counts of work and times are sums over
 /// the frame's steps, strain the largest of them, all else what the last step left; null where there is none.
@@ -23,4 +24,4 @@ std::string page_summary(const Scene& scene, const ClothModel& model, const std:
 std::vector<std::string> page_warnings(const Scene& scene, const std::vector<PageFrame>& frames,
                                        std::span<const StepReport> reports, const std::string& status);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -6,9 +6,10 @@
 
 #include "render/gl_context.hpp"
 #include "tool/inspect/figures.hpp"
+#include "tool/names.hpp"
 #include "tool/reproduce/runs.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// One figure or claim of the paper, and what came out here. Every number in `ours`, `why` and `numbers` is
 /// measured while the report is made.
@@ -39,4 +40,4 @@ Claim preconditioner_claim(const ReproduceScale& scale);
 /// Sec. 7: time of the decomposing solver against the whole one, on one thread and on two.
 Claim thread_claim(const ReproduceScale& scale);
 
-}  // namespace unravel
+}  // namespace unravel::tool

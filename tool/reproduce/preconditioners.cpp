@@ -9,7 +9,7 @@
 
 #include "tool/reproduce/claims.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -147,4 +147,4 @@ Claim preconditioner_claim(const ReproduceScale& scale) {
     return claim;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -8,10 +8,10 @@
 #include <filesystem>
 
 #include "render/palette.hpp"
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tool/view.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 std::optional<Scene> paper_scene(const std::string& name, const ReproduceScale& scale,
                                  std::vector<std::string> overrides) {
@@ -142,4 +142,4 @@ Components components_of(const FrameRecord& record) {
     return out;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

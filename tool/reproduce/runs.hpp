@@ -5,10 +5,11 @@
 #include <vector>
 
 #include "render/draw_scene.hpp"
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
+#include "tool/names.hpp"
 #include "tool/spread.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// How much work the reproduction does. Quick shows that it works; its numbers say little.
 struct ReproduceScale {
@@ -53,4 +54,4 @@ std::vector<Rgb> colors_at(const SceneRun& run, int frame);
 /// The components that a record's particles name.
 Components components_of(const FrameRecord& record);
 
-}  // namespace unravel
+}  // namespace unravel::tool

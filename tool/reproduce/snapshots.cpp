@@ -7,7 +7,7 @@
 #include "tool/reproduce/claims.hpp"
 #include "tool/still.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -194,4 +194,4 @@ std::vector<Claim> snapshot_claims(const ReproduceScale& scale, const DeviceChoi
     return claims;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -4,7 +4,7 @@
 
 #include "tool/reproduce/claims.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 Claim sparsity_claim(const ReproduceScale&) {  // 300 particles are quick enough
     Claim claim;
@@ -49,4 +49,4 @@ Claim sparsity_claim(const ReproduceScale&) {  // 300 particles are quick enough
     return claim;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

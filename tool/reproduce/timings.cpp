@@ -6,7 +6,7 @@
 
 #include "tool/reproduce/claims.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -141,4 +141,4 @@ Claim thread_claim(const ReproduceScale& scale) {
     return claim;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

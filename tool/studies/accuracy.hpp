@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/math.hpp"
+#include "sim/scene/math.hpp"
 #include "sim/scene/scene.hpp"
+#include "tool/names.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// The study of what accuracy costs in time: its settings, what a run of one gives, and the run itself.
 
@@ -96,4 +97,4 @@ std::vector<AccuracySetting> accuracy_grid(const AccuracyReference& reference);
 std::string accuracy_csv(const std::vector<AccuracyPoint>& points);
 std::vector<AccuracyPoint> read_accuracy_csv(const std::string& csv);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -346,4 +346,4 @@ std::string contrast_page(const AccuracyStudy& soft, const AccuracyStudy& stiff,
         soft.scene.name, words, svg.substr(svg.find("<svg")), winner_table(soft), times, winner_table(stiff));
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "tool/names.hpp"
 #include "tool/studies/accuracy_study.hpp"
 #include "tool/studies/accuracy_verdict.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// A cloth beside the same cloth many times stiffer: where each integrator wins.
 
@@ -36,4 +37,4 @@ std::array<Plot, 2> contrast_plots(const AccuracyStudy& soft, const AccuracyStud
 /// The page: both plots, words, tables.
 std::string contrast_page(const AccuracyStudy& soft, const AccuracyStudy& stiff, double times);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -6,9 +6,9 @@
 #include <set>
 
 #include "base/whole_file.hpp"
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace fs = std::filesystem;
 
@@ -96,4 +96,4 @@ fs::path AccuracyFolder::point_file(const AccuracySetting& s) const {
                                   s.band, static_cast<int>(s.bend));
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "tool/names.hpp"
 #include "tool/studies/accuracy.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// A study as far as it got.
 struct AccuracyStudy {
@@ -46,4 +47,4 @@ private:
     bool holds_study_ = false;
 };
 
-}  // namespace unravel
+}  // namespace unravel::tool

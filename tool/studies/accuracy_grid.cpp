@@ -8,7 +8,7 @@
 #include "sim/integrators/scheme.hpp"
 #include "tool/studies/accuracy.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -177,4 +177,4 @@ std::vector<AccuracyPoint> read_accuracy_csv(const std::string& csv) {
     return points;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

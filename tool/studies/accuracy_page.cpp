@@ -6,7 +6,7 @@
 
 #include "tool/studies/accuracy_verdict.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -170,4 +170,4 @@ std::string accuracy_page(const std::vector<AccuracyPoint>& points, const Accura
         escaped(accuracy_table(points, reference, error, fps)));
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

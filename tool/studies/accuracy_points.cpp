@@ -7,7 +7,7 @@
 #include "tool/cluster/job_script.hpp"
 #include "tool/studies/accuracy_verdict.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -92,4 +92,4 @@ ClusterWork accuracy_cluster_work(const Scene& scene, const std::filesystem::pat
     return work;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -1,9 +1,10 @@
 #pragma once
 
 #include "tool/cluster/cluster.hpp"
+#include "tool/names.hpp"
 #include "tool/studies/accuracy_study.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// A study in pieces that don't depend on each other: the points of its grid, each timed alone.
 
@@ -20,4 +21,4 @@ AccuracyStudy collect_accuracy(const Scene& scene, const std::filesystem::path& 
 /// The points that are not timed yet, as work for a cluster.
 ClusterWork accuracy_cluster_work(const Scene& scene, const std::filesystem::path& folder, bool force);
 
-}  // namespace unravel
+}  // namespace unravel::tool

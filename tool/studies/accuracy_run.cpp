@@ -4,11 +4,11 @@
 #include <cstring>
 
 #include "base/whole_file.hpp"
-#include "sim/explicit_limit.hpp"
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
+#include "sim/step/explicit_limit.hpp"
 #include "tool/studies/accuracy.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -238,4 +238,4 @@ AccuracyReference read_reference(const std::filesystem::path& file, std::size_t 
     return reference;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -9,7 +9,7 @@
 #include "tool/progress.hpp"
 #include "tool/studies/accuracy_verdict.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -168,4 +168,4 @@ std::optional<AccuracyPoint> measure_point(const AccuracyStudy& study, const Acc
     return std::move(run.point);
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -2,9 +2,10 @@
 
 #include <optional>
 
+#include "tool/names.hpp"
 #include "tool/studies/accuracy_folder.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 struct AccuracyBudget {
     double seconds = 600;  ///< for everything
@@ -31,4 +32,4 @@ bool study_reference(const Scene& scene, const std::filesystem::path& folder, co
 std::optional<AccuracyPoint> measure_point(const AccuracyStudy& study, const AccuracySetting& setting,
                                            const std::function<bool()>& keep_on);
 
-}  // namespace unravel
+}  // namespace unravel::tool

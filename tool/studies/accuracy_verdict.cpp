@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -170,4 +170,4 @@ std::string accuracy_table(const std::vector<AccuracyPoint>& points, const Accur
     return text;
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

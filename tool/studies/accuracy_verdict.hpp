@@ -4,10 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "tool/names.hpp"
 #include "tool/plot/plot.hpp"
 #include "tool/studies/accuracy.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// What the points of a study say.
 
@@ -50,4 +51,4 @@ Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyRefer
 std::string accuracy_page(const std::vector<AccuracyPoint>& points, const AccuracyReference& reference,
                           const std::string& scene, double seconds_simulated, int fps, double error);
 
-}  // namespace unravel
+}  // namespace unravel::tool

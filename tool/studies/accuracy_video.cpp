@@ -11,7 +11,7 @@
 #include "tool/plot/canvas.hpp"
 #include "tool/view.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 namespace {
 
@@ -118,4 +118,4 @@ void write_accuracy_video(const Scene& studied, const AccuracySide& cheap, const
     if (video.frames() > 0) video.finish();
 }
 
-}  // namespace unravel
+}  // namespace unravel::tool

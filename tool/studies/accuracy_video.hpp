@@ -4,9 +4,10 @@
 
 #include "render/draw_scene.hpp"
 #include "render/gl_context.hpp"
+#include "tool/names.hpp"
 #include "tool/studies/accuracy.hpp"
 
-namespace unravel {
+namespace unravel::tool {
 
 /// What the cheap answer looks like beside the accurate one.
 
@@ -28,4 +29,4 @@ void write_accuracy_video(const Scene& scene, const AccuracySide& cheap, const A
                           const DeviceChoice& device, const std::filesystem::path& file,
                           const std::function<bool()>& keep_on);
 
-}  // namespace unravel
+}  // namespace unravel::tool

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <functional>
 
-#include "sim/step.hpp"
+#include "sim/step/step.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

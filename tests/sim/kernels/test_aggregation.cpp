@@ -12,12 +12,13 @@
 #include <cstring>
 #include <numeric>
 
-#include "sim/kernels/aggregation.hpp"
-#include "sim/random.hpp"
-#include "sim/solve_components.hpp"
+#include "sim/linear/aggregation.hpp"
+#include "sim/scene/random.hpp"
+#include "sim/step/solve_components.hpp"
 #include "tests/allocations.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

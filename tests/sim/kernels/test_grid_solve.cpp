@@ -6,11 +6,12 @@
 #include <cmath>
 #include <cstring>
 
-#include "sim/random.hpp"
-#include "sim/solve_components.hpp"
+#include "sim/scene/random.hpp"
+#include "sim/step/solve_components.hpp"
 #include "tests/sim/scenes.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 
@@ -20,16 +21,16 @@ struct ListForm {
     bool tube;
 };
 constexpr ListForm layouts[] = {{"open", 37, 29, false},
-                              {"wide", 64, 20, false},
-                              {"tube", 24, 17, true},
-                              {"odd tube", 25, 18, true},
-                              {"tube of half a vector more", 20, 13, true},
-                              {"ribbon", 1, 150, false},
-                              {"row", 150, 1, false},
-                              {"tiny", 5, 3, false},
-                              {"narrow tube", 20, 13, true},
-                              {"ring", 3, 4, true},
-                              {"pair", 2, 1, false}};
+                                {"wide", 64, 20, false},
+                                {"tube", 24, 17, true},
+                                {"odd tube", 25, 18, true},
+                                {"tube of half a vector more", 20, 13, true},
+                                {"ribbon", 1, 150, false},
+                                {"row", 150, 1, false},
+                                {"tiny", 5, 3, false},
+                                {"narrow tube", 20, 13, true},
+                                {"ring", 3, 4, true},
+                                {"pair", 2, 1, false}};
 
 enum Held : unsigned { nothing = 0, pins = 1, contacts = 2 };
 

@@ -7,10 +7,12 @@
 #include <string>
 
 #include "base/whole_file.hpp"
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 #include "tests/base/temporary_folder.hpp"
 
 namespace unravel::testing {
+
+using namespace sim;
 
 /// n × n quads over a square of one metre in the x–z plane, as an OBJ; `triangles`: each cut in two.
 inline std::string sheet_obj(int n, bool triangles = false) {

@@ -4,12 +4,13 @@
 #include <map>
 #include <numeric>
 
-#include "sim/mesh/mesh_bends.hpp"
 #include "sim/mesh/mesh_cloth.hpp"
-#include "sim/simulate.hpp"
+#include "sim/model/mesh_bends.hpp"
+#include "sim/run/simulate.hpp"
 #include "tests/sim/mesh/mesh_scene.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

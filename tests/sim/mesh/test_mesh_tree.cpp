@@ -8,11 +8,12 @@
 #include "base/whole_file.hpp"
 #include "sim/mesh/mesh_solid.hpp"
 #include "sim/mesh/pc2.hpp"
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
 #include "sim/solids/sdf.hpp"
 #include "tests/sim/mesh/mesh_scene.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

@@ -6,6 +6,7 @@
 #include "tests/sim/mesh/mesh_scene.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

@@ -8,10 +8,11 @@
 #include <fstream>
 #include <sstream>
 
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 #include "source_dir.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

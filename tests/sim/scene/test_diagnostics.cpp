@@ -1,8 +1,9 @@
-#include "sim/scene/diagnostics.hpp"
+#include "sim/scene_file/diagnostics.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace unravel;
+using namespace unravel::sim;
 
 TEST_CASE("all problems of a scene are shown together, with line, caret and hint", "[scene]") {
     const std::string text =

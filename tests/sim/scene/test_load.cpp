@@ -1,4 +1,4 @@
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -8,9 +8,10 @@
 #include <system_error>
 
 #include "sim/scene/limits.hpp"
-#include "sim/scene/presets.hpp"
+#include "sim/scene_file/presets.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

@@ -1,8 +1,9 @@
 #include <catch2/catch.hpp>
 
-#include "sim/scene/load.hpp"
+#include "sim/scene_file/load.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

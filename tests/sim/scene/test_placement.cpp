@@ -1,9 +1,10 @@
-#include "sim/scene/placement.hpp"
+#include "sim/mesh/placement.hpp"
 
 #include <catch2/catch.hpp>
 #include <numbers>
 
 using namespace unravel;
+using namespace unravel::sim;
 
 TEST_CASE("an unrotated cloth lies flat, u along x, v along z, around its centre", "[scene]") {
     Cloth cloth;

@@ -1,8 +1,9 @@
-#include "sim/scene/presets.hpp"
+#include "sim/scene_file/presets.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace unravel;
+using namespace unravel::sim;
 
 TEST_CASE("presets are found by the names that the loader offers", "[scene]") {
     REQUIRE(preset_names().size() == material_presets().size());

@@ -1,14 +1,15 @@
-#include "sim/scene/reference.hpp"
+#include "sim/scene_file/reference.hpp"
 
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>
 
-#include "sim/scene/presets.hpp"
-#include "sim/scene/schema.hpp"
+#include "sim/scene_file/presets.hpp"
+#include "sim/scene_file/schema.hpp"
 #include "source_dir.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

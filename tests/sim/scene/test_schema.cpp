@@ -1,15 +1,16 @@
-#include "sim/scene/schema.hpp"
+#include "sim/scene_file/schema.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "sim/scene/document.hpp"
+#include "sim/scene_file/document.hpp"
 #include "source_dir.hpp"
 #include "tests/json_schema.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 using nlohmann::json;
 
 namespace {

@@ -1,8 +1,9 @@
-#include "sim/scene/similar.hpp"
+#include "sim/scene_file/similar.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace unravel;
+using namespace unravel::sim;
 
 TEST_CASE("edit distance counts insertions, deletions, substitutions and swaps", "[scene]") {
     CHECK(edit_distance("", "") == 0);

@@ -5,12 +5,13 @@
 
 #include "sim/mesh/mesh_cloth.hpp"
 #include "sim/mesh/mesh_solid.hpp"
-#include "sim/scene/document.hpp"
-#include "sim/scene/load.hpp"
-#include "sim/scene/schema.hpp"
+#include "sim/scene_file/document.hpp"
+#include "sim/scene_file/load.hpp"
+#include "sim/scene_file/schema.hpp"
 #include "source_dir.hpp"
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

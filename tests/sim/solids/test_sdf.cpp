@@ -5,6 +5,7 @@
 #include <random>
 
 using namespace unravel;
+using namespace unravel::sim;
 
 namespace {
 

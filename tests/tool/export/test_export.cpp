@@ -11,11 +11,12 @@
 #include "sim/mesh/mesh_cloth.hpp"
 #include "sim/mesh/obj.hpp"
 #include "sim/mesh/pc2.hpp"
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
 #include "tests/sim/mesh/mesh_scene.hpp"
 #include "tool/export/export.hpp"
 
 using namespace unravel;
+using namespace unravel::tool;
 
 namespace {
 

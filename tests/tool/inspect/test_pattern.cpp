@@ -4,10 +4,11 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "sim/scene/load.hpp"
-#include "sim/simulate.hpp"
+#include "sim/run/simulate.hpp"
+#include "sim/scene_file/load.hpp"
 
 using namespace unravel;
+using namespace unravel::tool;
 
 namespace {
 

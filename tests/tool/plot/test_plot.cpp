@@ -8,6 +8,7 @@
 #include "tool/plot/ticks.hpp"
 
 using namespace unravel;
+using namespace unravel::tool;
 
 namespace {
 

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 using namespace unravel;
+using namespace unravel::tool;
 
 namespace {
 

@@ -6,6 +6,7 @@
 #include "tool/report/html.hpp"
 
 using namespace unravel;
+using namespace unravel::tool;
 
 namespace {
 

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/scene/scene.hpp"
+
+namespace unravel::sim {
+
+/// An effect that a scene may call for, and why it is or is not simulated.
+struct Effect {
+    std::string name;  ///< as in run.json: "gravity", "solids", "wind", …
+    bool on = false;
+    std::string because;  ///< "[[solid]] at line 21: sphere, ground"
+};
+
+/// Every effect the simulator knows, on or off, in a fixed order.
+std::vector<Effect> list_effects(const Scene& scene);
+
+}  // namespace unravel::sim

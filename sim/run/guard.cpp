@@ -1,0 +1,250 @@
+#include "sim/run/guard.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/mesh/mesh_solid.hpp"
+
+namespace unravel::sim {
+
+namespace {
+
+constexpr std::size_t most_named = 16;
+// Energy that a step may add, as a share of what the run has to spend.
+constexpr double rounding_share = 1e-10;
+
+std::string advice_for(Criterion criterion, const StepOptions& options, double h) {
+    const bool explicit_springs = options.integrator != Integrator::implicit;
+    switch (criterion) {
+        case Criterion::not_finite:
+        case Criterion::energy:
+            return explicit_springs
+                       ? fmt::format("take a smaller step than {} s, or solver.integrator = \"implicit\"", h)
+                       : fmt::format("take a smaller step than {} s", h);
+        case Criterion::strain:
+            return fmt::format(
+                "raise cloth.material.stretch, lower its density, or take a smaller step than {} s", h);
+        case Criterion::unsolved:
+            return fmt::format(
+                "raise solver.max_iterations (now {}), take a smaller step, or soften what is stiffest",
+                options.solve.max_iterations);
+    }
+    return "";
+}
+
+// The `most_named` particles of greatest f, of those for which it is above `low`, the worst first.
+template <typename F>
+std::vector<std::uint32_t> worst_particles(std::size_t n, double low, const F& f) {
+    std::vector<std::pair<double, std::uint32_t>> worst;
+    for (std::uint32_t p = 0; p < n; ++p) {
+        const double value = f(p);
+        if (!(value <= low)) worst.emplace_back(std::isfinite(value) ? value : Guard::infinite, p);
+    }
+    const std::size_t kept = std::min(most_named, worst.size());
+    std::partial_sort(worst.begin(), worst.begin() + static_cast<std::ptrdiff_t>(kept), worst.end(),
+                      [](const auto& a, const auto& b) {
+                          return a.first != b.first ? a.first > b.first : a.second < b.second;
+                      });
+    std::vector<std::uint32_t> particles;
+    for (std::size_t k = 0; k < kept; ++k) particles.push_back(worst[k].second);
+    return particles;
+}
+
+double strain_of(const ClothModel& model, const std::vector<Vec3>& x, std::uint32_t s) {
+    return (x[model.springs.j[s]] - x[model.springs.i[s]]).norm() / model.springs.rest[s] - 1.0;
+}
+
+std::string particle_name(const ClothModel& model, std::uint32_t p) {
+    std::size_t c = 0;
+    while (p >= model.cloths[c].first + model.cloths[c].count()) ++c;
+    const ClothPatch& patch = model.cloths[c];
+    if (!patch.grid())
+        return fmt::format("particle {} (vertex {}{})", p, p - patch.first + 1,
+                           model.cloths.size() > 1 ? " of cloth " + std::to_string(c) : std::string());
+    const auto nu = static_cast<std::uint32_t>(patch.particles[0]);
+    const std::string where =
+        fmt::format("particle {} (u {}, v {}", p, (p - patch.first) % nu, (p - patch.first) / nu);
+    return where + (model.cloths.size() > 1 ? fmt::format(" of cloth {})", c) : std::string(")"));
+}
+
+double height_energy(const ClothModel& model, const std::vector<Vec3>& x) {
+    double energy = 0;
+    for (std::size_t p = 0; p < model.size(); ++p) energy -= model.mass[p] * model.gravity.dot(x[p]);
+    return energy;
+}
+
+struct Judgement {
+    const ClothModel& model;
+    const StepOptions& options;
+    const ClothState& after;
+    double h;
+    StepFailure failure;
+
+    [[noreturn]] void stop(Criterion criterion, const std::string& what) {
+        failure.criterion = criterion;
+        failure.advice = advice_for(criterion, options, h);
+        throw SimulationError(fmt::format("step {} (from {:.6g} s, {:.6g} s long): {}; {}", failure.step,
+                                          failure.t, h, what, failure.advice),
+                              failure);
+    }
+
+    void judge_finite(const StepReport& report) {
+        if (std::isfinite(report.kinetic) && std::isfinite(report.potential)) return;
+        failure.value = report.kinetic;
+        failure.limit = std::numeric_limits<double>::max();
+        failure.particles = worst_particles(model.size(), std::sqrt(failure.limit), [&](std::uint32_t p) {
+            return std::max(after.x[p].cwiseAbs().maxCoeff(), after.v[p].cwiseAbs().maxCoeff());
+        });
+        stop(Criterion::not_finite,
+             failure.particles.empty()
+                 ? std::string("the energy is not finite")
+                 : particle_name(model, failure.particles.front()) + " has left the numbers");
+    }
+
+    void judge_strain(const StepReport& report, double limit) {
+        if (report.max_strain <= limit) return;
+        std::vector<double> worst(model.size(), 0.0);
+        double most = -1;
+        for (std::uint32_t s = 0; s < model.springs.stretch_count; ++s) {
+            const double strain = strain_of(model, after.x, s);
+            for (const std::uint32_t p : {model.springs.i[s], model.springs.j[s]})
+                worst[p] = std::max(worst[p], strain);
+            if (strain <= most) continue;
+            most = strain;
+            failure.spring = s;
+        }
+        failure.value = report.max_strain;
+        failure.limit = limit;
+        failure.particles = worst_particles(model.size(), limit, [&](std::uint32_t p) { return worst[p]; });
+        stop(Criterion::strain,
+             fmt::format("the stretch spring from {} to {} would be {:.3g} times its rest length (at most "
+                         "{:.3g})",
+                         particle_name(model, model.springs.i[*failure.spring]),
+                         particle_name(model, model.springs.j[*failure.spring]), 1 + most, 1 + limit));
+    }
+
+    void judge_energy(const StepReport& report, double limit) {
+        failure.value = report.kinetic + height_energy(model, after.x);
+        if (failure.value <= limit) return;
+        failure.limit = limit;
+        failure.particles = worst_particles(
+            model.size(), 0.0, [&](std::uint32_t p) { return model.mass[p] * after.v[p].squaredNorm(); });
+        stop(Criterion::energy,
+             fmt::format("the energy of motion would grow to {:.3g} J (at most {:.3g} J) though nothing puts "
+                         "any in; {} is the fastest",
+                         failure.value, limit, particle_name(model, failure.particles.front())));
+    }
+
+    void judge_solution(const StepReport& report, const StepWorkspace& ws, double limit) {
+        if (report.converged) return;
+        for (std::size_t c = 0; c < ws.solves.size(); ++c) {
+            if (ws.solves[c].converged || ws.solves[c].residual <= limit) continue;
+            failure.value = ws.solves[c].residual;
+            failure.limit = limit;
+            const auto label = static_cast<std::int32_t>(c);
+            failure.particles = worst_particles(model.size(), -1.0, [&](std::uint32_t p) {
+                return ws.components.label[p] == label ? ws.dv[p].norm() : -1.0;
+            });
+            stop(Criterion::unsolved,
+                 fmt::format("conjugate gradients left a residual of {:.3g} (at most {:.3g}) after {} "
+                             "iterations in the component of {} particles around {}",
+                             failure.value, limit, ws.solves[c].iterations, ws.components.size(c),
+                             particle_name(model, failure.particles.front())));
+        }
+    }
+};
+
+}  // namespace
+
+const char* criterion_name(Criterion criterion) {
+    constexpr const char* names[] = {"not_finite", "strain", "energy", "unsolved"};
+    return names[static_cast<int>(criterion)];
+}
+
+bool takes_energy(const ClothModel& model) {
+    const auto moves = [](const auto& thing) { return !thing.motion.empty(); };
+    const bool blows = model.wind && (!model.wind->velocity.isZero() || !model.wind->keyframes.empty());
+    const auto deforms = [](const Solid& solid) { return solid.geometry && solid.geometry->deforms(); };
+    return blows || model.stitches.size() > 0 || std::any_of(model.pins.begin(), model.pins.end(), moves) ||
+           std::any_of(model.solids.begin(), model.solids.end(), moves) ||
+           std::any_of(model.solids.begin(), model.solids.end(), deforms);
+}
+
+Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
+    Guard guard;
+    StepReport report;
+    MeasureWorkspace scratch;
+    BendLimit bend;
+    limit_bend(model.bends, model.mass, h, bend);
+    measure(model, bend, start, scratch, report);
+    guard.strain += std::max(report.max_strain, 0.0);
+    if (takes_energy(model)) return guard;
+    double weight = 0, size = 0;
+    for (const double m : model.mass) weight += m * model.gravity.norm();
+    for (const ClothPatch& patch : model.cloths) size = std::max({size, patch.size[0], patch.size[1]});
+    const double height = height_energy(model, start.x), springs = report.potential - height;
+    const double spent = report.kinetic + springs + weight * size;
+    guard.energy = height + 2.0 * spent;
+    guard.total = report.kinetic + report.potential;
+    if (!model.has_temporary_springs()) guard.rounding = rounding_share * spent;
+    return guard;
+}
+
+namespace {
+
+double total_energy(const StepReport& report) {
+    return report.kinetic + report.potential;
+}
+
+// Linearises the step again until it ends with no more energy than it began with, or until its end is met;
+// keeps that where it holds less.
+StepReport take_again(const ClothModel& model, const StepOptions& options, double h, double energy,
+                      const StepReport& first, ClothState& state, StepWorkspace& ws) {
+    StepOptions thorough = options;
+    thorough.energy_limit = energy;
+    ClothState once = state;
+    std::swap(state, ws.before);
+    const StepReport second = step(model, thorough, h, state, ws);
+    const bool better = total_energy(second) < total_energy(first);
+    if (!better) std::swap(state, once);
+    StepReport report = better ? second : first;
+    report.converged = first.converged;  // how far the end was met shows in the energy
+    report.cg_iterations = first.cg_iterations + second.cg_iterations;
+    report.cg_iterations_max = std::max(first.cg_iterations_max, second.cg_iterations_max);
+    report.rvm = first.rvm + second.rvm;
+    if (first.rvm_whole) report.rvm_whole = *first.rvm_whole + second.rvm_whole.value_or(0);
+    report.times = first.times;
+    report.times += second.times;
+    report.rejected = 1;
+    return report;
+}
+
+}  // namespace
+
+StepReport guarded_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
+                        StepWorkspace& ws, Guard& guard) {
+    StepReport report = step(model, options, h, state, ws);
+    if (!options.measure) return report;
+    const bool grew = total_energy(report) > guard.total + guard.rounding;
+    if (grew && ws.coupled && std::isfinite(total_energy(report)))
+        report = take_again(model, options, h, guard.total, report, state, ws);
+    Judgement judgement{model, options, state, h, {}};
+    judgement.failure.step = report.step;
+    judgement.failure.t = ws.before.t;
+    judgement.failure.h = h;
+    try {
+        judgement.judge_finite(report);
+        judgement.judge_strain(report, guard.strain);
+        judgement.judge_energy(report, guard.energy);
+        judgement.judge_solution(report, ws, guard.residual);
+    } catch (const SimulationError&) {
+        std::swap(state, ws.before);
+        throw;
+    }
+    guard.total = total_energy(report);
+    return report;
+}
+
+}  // namespace unravel::sim

@@ -1,0 +1,163 @@
+// Where cloth, pins and solids are at the start.
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "sim/mesh/placement.hpp"
+#include "sim/scene_file/check.hpp"
+#include "sim/solids/sdf.hpp"
+
+namespace unravel::sim {
+
+namespace {
+
+struct Held {
+    int i = 0, j = 0;
+    double depth = 0;  ///< m inside the surface
+};
+
+/// The first particle found deeper in the solid than its offset. The distance changes by no more than one
+/// moves, so a block of the grid whose middle is farther out than the block reaches has none; other blocks
+/// are cut in four. That makes a cloth of millions as cheap as its border with the solid.
+class HeldSearch {
+public:
+    HeldSearch(const Cloth& cloth, const Solid& solid)
+        : cloth_(cloth), solid_(solid), to_solid_(start_pose(solid).inverse()) {}
+
+    std::optional<Held> find() const {
+        return cloth_.geometry ? find_vertex() : find(0, cloth_.particles[0], 0, cloth_.particles[1]);
+    }
+
+private:
+    std::optional<Held> find_vertex() const {
+        for (int v = 0; v < cloth_.particles[0]; ++v) {
+            const double distance = signed_distance(solid_, to_solid_ * placed_particle(cloth_, v, 0));
+            if (distance < -solid_.offset) return Held{v, 0, -distance};
+        }
+        return {};
+    }
+
+    std::optional<Held> find(int i0, int i1, int j0, int j1) const {
+        const int i = (i0 + i1) / 2, j = (j0 + j1) / 2;
+        const double distance = signed_distance(solid_, to_solid_ * placed_particle(cloth_, i, j));
+        if (distance < -solid_.offset) return Held{i, j, -distance};
+        // On a tube the way through the air is shorter than along the cloth, so the bound holds there too.
+        const double reach_u = spacing(0) * std::max(i - i0, i1 - 1 - i);
+        const double reach_v = spacing(1) * std::max(j - j0, j1 - 1 - j);
+        const bool single = i1 - i0 == 1 && j1 - j0 == 1;
+        if (single || distance + solid_.offset > std::hypot(reach_u, reach_v) * (1 + 1e-9)) return {};
+        for (const auto& [a0, a1] : {std::array{i0, i}, std::array{i, i1}}) {
+            for (const auto& [b0, b1] : {std::array{j0, j}, std::array{j, j1}}) {
+                if (a0 == a1 || b0 == b1) continue;
+                if (const std::optional<Held> held = find(a0, a1, b0, b1)) return held;
+            }
+        }
+        return {};
+    }
+
+    double spacing(std::size_t axis) const {
+        const int cells =
+            axis == 0 && cloth_.wrap == Wrap::tube ? cloth_.particles[0] : cloth_.particles[axis] - 1;
+        return cloth_.size[axis] * cloth_.placed_scale[axis] / std::max(cells, 1);
+    }
+
+    const Cloth& cloth_;
+    const Solid& solid_;
+    Eigen::Isometry3d to_solid_;
+};
+
+// False: its mesh has faults of its own.
+bool loaded(const Cloth& cloth) {
+    return cloth.mesh.file.empty() || cloth.geometry;
+}
+bool loaded(const Solid& solid) {
+    return solid.shape != Shape::mesh || solid.geometry;
+}
+
+std::string quoted_name(const std::string& kind, const std::string& name) {
+    return name.empty() ? "the " + kind : fmt::format("the {} \"{}\"", kind, name);
+}
+
+/// The particle nearest to (u, v). The distance along the cloth is a sum of one part in u and one in v, so it
+/// is found along each by itself.
+std::array<int, 2> nearest_particle(const Cloth& cloth, const Vec2& uv) {
+    const auto [nu, nv] = cloth.particles;
+    const int j = static_cast<int>(std::lround(uv.y() * (nv - 1)));
+    if (cloth.wrap == Wrap::tube) return {static_cast<int>(std::lround(uv.x() * nu)) % nu, j};
+    return {static_cast<int>(std::lround(uv.x() * (nu - 1))), j};
+}
+
+}  // namespace
+
+void check_start(const Checking& check) {
+    const Scene& scene = check.scene;
+    for (std::size_t k = 0; k < scene.solids.size(); ++k) {
+        if (!check.places.sound(fmt::format("solid[{}]", k))) continue;
+        for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+            const std::string path = fmt::format("cloth[{}]", c);
+            if (!check.places.sound(path + ".particles") || !check.places.sound_itself(path)) continue;
+            if (!loaded(scene.cloths[c]) || !loaded(scene.solids[k])) continue;
+            const std::optional<Held> held = HeldSearch(scene.cloths[c], scene.solids[k]).find();
+            if (!held) continue;
+            const std::string particle = scene.cloths[c].geometry
+                                             ? fmt::format("vertex {}", held->i + 1)
+                                             : fmt::format("particle ({}, {})", held->i, held->j);
+            check.report(fmt::format("solid[{}]", k),
+                         fmt::format("{} holds {} at the start: {} is {:.3g} m inside",
+                                     quoted_name("solid", scene.solids[k].name),
+                                     quoted_name("cloth", scene.cloths[c].name), particle, held->depth),
+                         "move one of them");
+        }
+    }
+}
+
+void check_pin(const Fields& cloth_fields, Fields& pin_fields, const Cloth& cloth, const Pin& pin,
+               const std::vector<std::string>& names) {
+    if (!cloth_fields.sound("particles") || !cloth_fields.sound("size") || !cloth_fields.sound("wrap"))
+        return;
+    const auto [nu, nv] = cloth.particles;
+    const auto nothing = [&](std::string_view key, std::string hint) {
+        if (pin_fields.says(key) && pin_fields.sound(key))
+            pin_fields.problem(key, "the pin catches no particle", std::move(hint));
+    };
+    const auto test_nearest = [&](std::string_view key, const Vec2& uv) {
+        const auto [i, j] = nearest_particle(cloth, uv);
+        const Vec2 there = particle_uv(cloth, i, j);
+        if (!pin_catches(cloth, pin, i, j))
+            nothing(key, fmt::format("the nearest is at u = {:.4g}, v = {:.4g}", there.x(), there.y()));
+    };
+    switch (pin.target) {
+        case PinTarget::corner:
+            if (cloth.wrap == Wrap::tube)
+                nothing("corner", "a tube has no corners; say edge, particles, box or disc");
+            break;
+        case PinTarget::edge:
+            if (cloth.wrap == Wrap::tube && std::any_of(names.begin(), names.end(), [](const auto& name) {
+                    return name.starts_with("u");
+                }))
+                nothing("edge", "a tube has the edges v0 and v1 only");
+            break;
+        case PinTarget::particles:
+            if (pin.range[0] > pin.range[1] || pin.range[2] > pin.range[3])
+                nothing("particles", "write first and last along u, then first and last along v");
+            else if (pin.range[1] >= nu || pin.range[3] >= nv)
+                nothing("particles",
+                        fmt::format("indices run from 0 to {} along u and to {} along v", nu - 1, nv - 1));
+            break;
+        case PinTarget::box:
+            test_nearest("box", (pin.box.low + pin.box.high) / 2);
+            break;
+        case PinTarget::disc:
+            test_nearest("disc", pin.disc.center);
+            break;
+        case PinTarget::group:
+        case PinTarget::within:
+            break;  // of meshes, which are read later
+    }
+}
+
+}  // namespace unravel::sim

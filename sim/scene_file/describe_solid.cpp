@@ -1,0 +1,71 @@
+#include "sim/scene_file/describe.hpp"
+
+namespace unravel::sim {
+
+namespace {
+
+constexpr std::string_view shapes[] = {"plane", "sphere", "box", "cylinder", "capsule", "mesh"};
+constexpr Bounds length_bounds{1e-4, 1000, false, "m"};
+constexpr Bounds friction_bounds{0, 100};
+
+void describe(Fields& f, Friction& friction) {
+    f.number({"static", "coefficient while held", true}, friction.static_, friction_bounds);
+    f.number({"kinetic", "coefficient while sliding; default: 0.8 of static"}, friction.kinetic,
+             friction_bounds);
+}
+
+}  // namespace
+
+void describe(Fields& f, MeshFrames& frames, bool applies) {
+    f.text({"mesh_frames", "how the mesh deforms: a PC2 file, or OBJ files numbered where the name has '#'",
+            false, applies},
+           frames.files, TextKind::path);
+    const bool moves =
+        applies && (f.reading() ? f.says("mesh_frames") : !f.writing() || !frames.files.empty());
+    f.number({"mesh_fps", "samples per second", false, moves}, frames.fps, {1e-3, 1e5});
+    f.number({"mesh_start", "s, when the first sample is due", false, moves}, frames.start,
+             {-3600, 3600, false, "s"});
+}
+
+void describe(Fields& f, Solid& solid) {
+    f.place(solid.place);
+    f.text({"name", "for messages and reports"}, solid.name, TextKind::name);
+    f.choice({"shape", "unrotated, a plane faces up, a cylinder or capsule stands", true}, solid.shape,
+             shapes);
+    const Shape shape = solid.shape;
+    const bool mesh = shape == Shape::mesh;
+    describe(f, solid.mesh,
+             {"mesh", "OBJ file in the scene's folder: a closed body", false,
+              mesh || (!f.reading() && !f.writing())});
+    if (f.reading() && mesh && !f.says("mesh"))
+        f.problem("shape", "a mesh without a file", "write mesh = \"body.obj\"");
+    describe(f, solid.frames, mesh || (!f.reading() && !f.writing()));
+    const bool curved = shape == Shape::sphere || shape == Shape::cylinder || shape == Shape::capsule;
+    f.number({"radius", "of spheres, cylinders and capsules [m]", false, curved}, solid.radius,
+             length_bounds);
+    f.number({"height", "of cylinders (whole) and capsules (between the centres of the caps) [m]", false,
+              shape == Shape::cylinder || shape == Shape::capsule},
+             solid.height, length_bounds);
+    f.vector({"size", "edge lengths of a box [m]", false, shape == Shape::box}, solid.size, length_bounds);
+    f.number({"round", "radius of the rounded edges of boxes and cylinders [m]", false,
+              shape == Shape::box || shape == Shape::cylinder},
+             solid.round, {0, 1000, false, "m"});
+    f.vector({"center", "m"}, solid.center, position_bounds);
+    f.vector({"rotation", "degrees about x, then y, then z"}, solid.rotation, rotation_bounds);
+    f.list({"motion", "keyframes: displacement from where it stands, and rotation about the pivot"},
+           solid.motion, ListForm::inline_tables, in_order<Keyframe>());
+    if (f.reading()) solid.pivot = solid.center;
+    f.vector({"pivot", "m, in the world at the start; default: the center"}, solid.pivot, position_bounds);
+    const bool plain = f.number_or_table(
+        {"friction", "a number, or {static, kinetic}; a number mu stands for static mu, kinetic 0.8 mu"},
+        solid.friction.static_, friction_bounds, [&](Fields& g) {
+            describe(g, solid.friction);
+            if (g.reading() && !g.says("kinetic")) solid.friction.kinetic = 0.8 * solid.friction.static_;
+        });
+    if (plain) solid.friction.kinetic = 0.8 * solid.friction.static_;
+    f.number({"offset", "m, distance at which cloth is held off the surface"}, solid.offset,
+             {0, 1, false, "m"});
+    f.text({"color", "\"#rrggbb\"; default: the look's"}, solid.color, TextKind::color);
+}
+
+}  // namespace unravel::sim

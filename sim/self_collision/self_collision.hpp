@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/forces/extension.hpp"
+#include "sim/model/model.hpp"
+#include "sim/scene/math.hpp"
+
+namespace unravel::sim {
+
+/// Cloth against cloth (paper Sec. 2.2; Zhang & Yuen 2000): particles that are no neighbours and nearer than
+/// a thickness get a temporary stiff damped spring that pushes them apart. These springs enter the splitting
+/// and the component graph like the cloth's own.
+struct SelfCollisionWorkspace {
+    ExtensionSprings springs;  ///< of this step; `rest` is the thickness
+    ExtensionForces forces;
+    Adjacency adjacency;
+    double least_distance = 0;  ///< m, between particles that may collide; the thickness if none are nearer
+
+    /// Pairs near enough to matter within a while, found by voxels; reused until a particle has moved too
+    /// far.
+    std::vector<std::uint32_t> candidate_i, candidate_j;
+    std::vector<Vec3> x_searched;  ///< (particles) where they were then [m]
+    std::vector<std::uint32_t> voxel_start, voxel_particles, voxel_of;
+    std::vector<std::vector<std::uint32_t>> found;  ///< (chunks of particles) i, j, i, j, …
+};
+
+/// The springs that are not the cloth's own, at (x, v): first the model's stitches as they are at time t,
+/// then, where the scene calls for self-collision, its pairs. Split by κ ≤ threshold. Memory is kept between
+/// steps.
+void temporary_springs(const ClothModel& model, double t, std::span<const Vec3> x, std::span<const Vec3> v,
+                       double h, double threshold, SelfCollisionWorkspace& ws);
+
+/// Appends the step's pairs and their forces to the stitches' springs; `ws.adjacency` is left as it is.
+void self_collide(const ClothModel& model, std::span<const Vec3> x, std::span<const Vec3> v, double h,
+                  double threshold, SelfCollisionWorkspace& ws);
+
+/// Whether two particles may never collide: near neighbours on the same cloth, or nearer than the thickness
+/// when flat.
+bool are_neighbours(const ClothModel& model, std::uint32_t p, std::uint32_t q);
+
+}  // namespace unravel::sim

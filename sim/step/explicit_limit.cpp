@@ -1,0 +1,145 @@
+#include "sim/step/explicit_limit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/integrators/scheme.hpp"
+#include "sim/mesh/mesh_cloth.hpp"
+
+namespace unravel::sim {
+
+namespace {
+
+std::size_t patch_of(const ClothModel& model, std::uint32_t p) {
+    std::size_t c = 0;
+    while (p >= model.cloths[c].first + model.cloths[c].count()) ++c;
+    return c;
+}
+
+// Direction of a spring in the plane that touches a mesh at vertex p.
+Vec2 tangent_direction(const MeshCloth& mesh, const std::vector<Vec3>& normals, std::uint32_t p,
+                       std::uint32_t i, std::uint32_t j) {
+    const Vec3& n = normals[p];
+    const Vec3 a = n.unitOrthogonal(), d = mesh.rest[j] - mesh.rest[i];
+    const Vec2 in_plane(a.dot(d), n.cross(a).dot(d));
+    const double length = in_plane.norm();
+    return length > 0 ? Vec2(in_plane / length) : Vec2(1, 0);
+}
+
+// Unit normals at the vertices of a mesh at rest.
+std::vector<Vec3> rest_normals(const MeshCloth& mesh) {
+    std::vector<Vec3> normals(mesh.rest.size(), Vec3::Zero());
+    for (const MeshCloth::Cell& cell : mesh.cells) {
+        const auto x = [&](std::size_t k) { return mesh.rest[cell.vertex[k]]; };
+        const Vec3 n =
+            cell.corners == 4 ? (x(2) - x(0)).cross(x(3) - x(1)) : (x(1) - x(0)).cross(x(2) - x(0));
+        for (std::size_t k = 0; k < cell.corners; ++k) normals[cell.vertex[k]] += n;
+    }
+    for (Vec3& n : normals) n = n.norm() > 0 ? Vec3(n.normalized()) : Vec3::UnitY();
+    return normals;
+}
+
+// Direction of a spring on the flat cloth.
+Vec2 flat_direction(const ClothModel& model, std::uint32_t i, std::uint32_t j) {
+    const ClothPatch& patch = model.cloths[patch_of(model, i)];
+    const int nu = patch.particles[0], a = static_cast<int>(i - patch.first),
+              b = static_cast<int>(j - patch.first);
+    int du = b % nu - a % nu;
+    if (patch.tube && std::abs(du) > 1) du = du > 0 ? -1 : 1;  // over the seam
+    const Vec2 d(du * patch.size[0] / std::max(patch.cells_u(), 1),
+                 (b / nu - a / nu) * patch.size[1] / std::max(patch.cells_v(), 1));
+    return d.normalized();
+}
+
+double larger_eigenvalue(const Eigen::Matrix2d& A) {
+    const double mean = 0.5 * A.trace(), half = 0.5 * (A(0, 0) - A(1, 1));
+    return mean + std::hypot(half, A(0, 1));
+}
+
+}  // namespace
+
+ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options, double h) {
+    const Scheme& scheme = scheme_of(options.integrator);
+    const Splitting splitting = scheme.splitting(options.threshold);
+    // What is pinned for good does not swing.
+    std::vector<char> held(model.size(), 0);
+    for (const PinnedGroup& pin : model.pins) {
+        for (const std::uint32_t p : pin.particles) held[p] = !std::isfinite(pin.release);
+    }
+    std::vector<std::vector<Vec3>> normals(model.cloths.size());
+    for (std::size_t c = 0; c < normals.size(); ++c) {
+        if (!model.cloths[c].grid()) normals[c] = rest_normals(*model.cloths[c].mesh);
+    }
+    const auto share_at = [&](double step, ExplicitLimit* out) {
+        std::vector<Eigen::Matrix2d> blocks(model.size(), Eigen::Matrix2d::Zero());
+        std::vector<double> kappas(model.size(), 0.0);
+        for (std::uint32_t s = 0; s < model.springs.size(); ++s) {
+            const std::uint32_t i = model.springs.i[s], j = model.springs.j[s];
+            const double k = model.springs.stiffness[s], d = model.springs.damping[s];
+            const double of_spring = kappa(step, 1.0 / std::min(model.mass[i], model.mass[j]), k, d);
+            const bool stretch = s < model.springs.stretch_count;
+            if (of_spring > (stretch ? splitting.stretch_threshold : splitting.shear_threshold)) continue;
+            const std::size_t c = patch_of(model, i);
+            const bool grid = model.cloths[c].grid();
+            const std::uint32_t first = model.cloths[c].first;
+            Vec2 u = grid ? flat_direction(model, i, j) : Vec2::Zero();
+            for (const std::uint32_t p : {i, j}) {
+                if (!grid)
+                    u = tangent_direction(*model.cloths[c].mesh, normals[c], p - first, i - first, j - first);
+                blocks[p] += step * (step * k + 2.0 * d) * u * u.transpose();
+                kappas[p] = std::max(kappas[p], of_spring);
+            }
+        }
+        double share = 0;
+        for (std::uint32_t p = 0; p < model.size(); ++p) {
+            if (held[p] != 0) continue;
+            const double here = 2 * larger_eigenvalue(blocks[p]) / (model.mass[p] * scheme.explicit_bound);
+            if (here <= share) continue;
+            share = here;
+            if (out) *out = {share, p, kappas[p], 0};
+        }
+        return share;
+    };
+    ExplicitLimit limit;
+    share_at(h, &limit);
+    limit.step = std::numeric_limits<double>::infinity();
+    const bool follows_step =
+        splitting.stretch_threshold >= 0 && splitting.stretch_threshold < always_explicit;
+    if (limit.share == 0 || follows_step) return limit;
+    // The share grows with the step: at least linearly, at most as its square.
+    double low = h / std::max(1.0, limit.share), high = h * std::max(1.0, 1.0 / limit.share);
+    for (int k = 0; k < 40; ++k) {
+        const double middle = 0.5 * (low + high);
+        (share_at(middle, nullptr) < 1 ? low : high) = middle;
+    }
+    limit.step = low;
+    return limit;
+}
+
+void require_explicit_stability(const ClothModel& model, const StepOptions& options, double h) {
+    if (options.integrator == Integrator::automatic) return;  // whichever it takes is stable
+    if (options.integrator == Integrator::explicit_) {
+        if (options.substeps == 0) return;  // as many as it takes
+        h /= options.substeps;
+    }
+    const ExplicitLimit limit = explicit_limit(model, options, h);
+    if (limit.share < 1) return;
+    const std::string fault = fmt::format(
+        "the springs handled explicitly at particle {} reach kappa = {:.3g} (Eq. 7): {:.3g} times what a "
+        "step "
+        "of {:.4g} s bears",
+        limit.particle, limit.kappa, limit.share, h);
+    if (std::isfinite(limit.step)) {
+        throw UnstableStep(
+            fmt::format("{}; the largest stable step is {:.3g} s; solver.substeps = 0 divides each step "
+                        "until it is stable, "
+                        "solver.integrator = \"adaptive-imex\" bears it whole",
+                        fault, limit.step));
+    }
+    throw UnstableStep(fmt::format("{}; take a solver.threshold of 0.5 or less", fault));
+}
+
+}  // namespace unravel::sim

@@ -1,0 +1,168 @@
+#include "sim/step/solve_components.hpp"
+
+#include <tbb/task_group.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace unravel::sim {
+
+namespace {
+
+// Rows from which the grid's solver is the faster one.
+constexpr std::uint32_t least_rows = 256;
+// A component that covers less than this share of its rows of the grid wastes too much of every sweep.
+constexpr double least_share = 0.3;
+// Stiffest coupling over mass that single precision bears.
+constexpr double stiffest_in_float = 1e5;
+// What a solve by multigrid costs, set-up included, in iterations with blocks.
+constexpr std::uint32_t iterations_worth_multigrid = 60;
+// Cycles after which multigrid gives way to blocks.
+constexpr std::uint32_t most_multigrid_cycles = 60;
+
+const GridSprings* grid_of(std::span<const GridSprings> grids, std::uint32_t particle) {
+    for (const GridSprings& g : grids) {
+        if (particle >= g.particle && particle < g.particle + g.count()) return &g;
+    }
+    return nullptr;
+}
+
+bool may_use_grids(const SolveOptions& options) {
+    return (options.preconditioner == Preconditioner::automatic ||
+            options.preconditioner == Preconditioner::stencil_block ||
+            options.preconditioner == Preconditioner::multigrid) &&
+           options.tolerance >= grid_cg_tolerance;
+}
+
+void plan_solves(std::span<const GridSprings> grids, std::span<const SpringFamily> families,
+                 const Components& components, const SolveOptions& options, GridSolves& ws) {
+    SolvePlan& plan = ws.plan;
+    plan.on_grid.clear();
+    plan.elsewhere.clear();
+    if (!may_use_grids(options) || grids.empty()) return;
+    // Springs between cloth that touches itself are in no grid's stencil.
+    ws.touched.assign(components.count(), 0);
+    for (const SpringFamily& family : families.subspan(1)) {
+        for (std::size_t s = 0; s < family.forces->state.size(); ++s) {
+            if (family.forces->state[s] != SpringState::implicit) continue;
+            for (const std::uint32_t p : {family.springs->i[s], family.springs->j[s]}) {
+                if (components.label[p] >= 0) ws.touched[static_cast<std::size_t>(components.label[p])] = 1;
+            }
+        }
+    }
+    for (std::size_t c = 0; c < components.count(); ++c) {
+        const std::uint32_t size = components.size(c);
+        if (size < least_rows || ws.touched[c]) continue;
+        const std::uint32_t first = components.order[components.start[c]],
+                            last = components.order[components.start[c + 1] - 1];
+        const GridSprings* g = grid_of(grids, first);
+        if (!g || last >= g->particle + g->count()) continue;
+        const std::uint32_t rows = (last - g->particle) / g->nu - (first - g->particle) / g->nu + 1;
+        if (size < least_share * rows * g->nu) continue;
+        plan.on_grid.push_back({static_cast<std::uint32_t>(c), g});
+    }
+    if (plan.on_grid.empty()) return;
+    plan.elsewhere.assign(components.count(), 0);
+    for (const SolvePlan::OnGrid& task : plan.on_grid) plan.elsewhere[task.component] = 1;
+}
+
+// Block-preconditioned iterations grow with the distance that a spring's pull travels within a step, √κ grid
+// spacings, as long as the component is larger than that; fitted to hanging and draped sheets.
+bool pays_multigrid(const GridSystem& system) {
+    const double reach = std::min(std::sqrt(system.stiffest), std::sqrt(static_cast<double>(system.rows)));
+    return 6.0 * std::pow(reach, 0.75) > iterations_worth_multigrid;
+}
+
+void solve_grid(const SolveOptions& options, GridSolves::Grid& grid) {
+    const bool chooses = options.preconditioner == Preconditioner::automatic;
+    const bool multigrid =
+        options.preconditioner == Preconditioner::multigrid || (chooses && pays_multigrid(grid.system));
+    const std::uint32_t patience = multigrid ? most_multigrid_cycles
+                                   : chooses ? iterations_worth_multigrid
+                                             : std::numeric_limits<std::uint32_t>::max();
+    grid.solved = grid.system.stiffest <= stiffest_in_float &&
+                  solve_on_grid(grid.system, multigrid, patience, options, grid.cg, grid.solve);
+}
+
+void take_solution(const GridSystem& system, const Components& components, std::span<Vec3> x) {
+    const std::uint32_t first = components.start[system.component];
+    parallel_each(components.size(system.component), [&](std::size_t k) {
+        const std::uint32_t node = components.order[first + k] - system.first_particle;
+        const auto nu = static_cast<std::uint32_t>(system.grid.nu);
+        const double* const p =
+            system.x.data() +
+            static_cast<std::size_t>(node / nu) * 3 * static_cast<std::size_t>(system.grid.pitch) +
+            StencilGrid::margin + node % nu;
+        x[first + k] = {p[0], p[system.grid.pitch], p[2 * system.grid.pitch]};
+    });
+}
+
+// What cycles by aggregation walk on, made when the first component is there that may get them.
+void make_aggregates_where_needed(const StepSystem& step, const SolveOptions& options,
+                                  const std::vector<std::uint8_t>& elsewhere, SolveWorkspace& ws) {
+    if (ws.aggregates.particles() > 0) return;
+    const std::uint32_t least = least_rows_of_aggregation(options.preconditioner);
+    bool needed = false;
+    for (std::size_t c = 0; c < step.components.count(); ++c)
+        needed = needed || (step.components.size(c) >= least && (elsewhere.empty() || !elsewhere[c]));
+    if (!needed) return;
+    std::vector<Aggregates::Join> joins;
+    if (step.stitches) {
+        const Stitches& all = *step.stitches;
+        for (std::size_t s = 0; s < all.size(); ++s) joins.push_back({all.i[s], all.j[s], all.stiffness[s]});
+    }
+    ws.aggregates = make_aggregates(step.load.mass.size(), *step.families[0].springs, joins);
+}
+
+}  // namespace
+
+void assemble_components(const StepSystem& step, const SolveOptions& options, GridSolves& grids,
+                         System& rows) {
+    plan_solves(step.grids, step.families, step.components, options, grids);
+    const SolvePlan& plan = grids.plan;
+    while (grids.grids.size() < plan.on_grid.size())
+        grids.grids.push_back(std::make_unique<GridSolves::Grid>());
+    tbb::task_group giants;
+    for (std::size_t k = 0; k < plan.on_grid.size(); ++k) {
+        giants.run([&, k] {
+            load_grid_system(*plan.on_grid[k].springs, step.families[0], step.load, step.components,
+                             plan.on_grid[k].component, step.constraints, step.guess, step.h,
+                             grids.grids[k]->system);
+        });
+    }
+    assemble(step.families, step.load, step.components, step.constraints, step.h, rows, plan.elsewhere);
+    giants.wait();
+}
+
+void solve_components(const StepSystem& step, const SolveOptions& options, GridSolves& grids, System& rows,
+                      SolveWorkspace& ws, std::vector<ComponentSolve>& out) {
+    SolvePlan& plan = grids.plan;
+    const auto solve_rows = [&] {
+        make_aggregates_where_needed(step, options, plan.elsewhere, ws);
+        solve(rows, step.components, step.constraints, step.guess, options, ws, out);
+    };
+    tbb::task_group giants;
+    for (std::size_t k = 0; k < plan.on_grid.size(); ++k)
+        giants.run([&, k] { solve_grid(options, *grids.grids[k]); });
+    solve_rows();
+    giants.wait();
+
+    // What single precision could not solve goes the long way.
+    bool failed = false;
+    for (std::size_t k = 0; k < plan.on_grid.size(); ++k) {
+        plan.elsewhere[plan.on_grid[k].component] = grids.grids[k]->solved;
+        failed = failed || !grids.grids[k]->solved;
+    }
+    if (failed) {
+        assemble(step.families, step.load, step.components, step.constraints, step.h, rows, plan.elsewhere);
+        solve_rows();
+    }
+    for (std::size_t k = 0; k < plan.on_grid.size(); ++k) {
+        if (!grids.grids[k]->solved) continue;
+        out[plan.on_grid[k].component] = grids.grids[k]->solve;
+        take_solution(grids.grids[k]->system, step.components, ws.x);
+    }
+}
+
+}  // namespace unravel::sim

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sim/forces/grid_springs.hpp"
+#include "sim/kernels/grid_cg.hpp"
+#include "sim/linear/solve.hpp"
+#include "sim/model/model.hpp"
+
+namespace unravel::sim {
+
+/// What solves each component of a step: rows in double (sim/linear/solve.hpp), or, for a large one that lies
+/// on a grid, the grid's own solver in single precision (sim/kernels/grid_cg.hpp). Chosen from the system
+/// alone, so that the same input gives the same bits.
+struct SolvePlan {
+    struct OnGrid {
+        std::uint32_t component;
+        const GridSprings* springs;
+    };
+    std::vector<OnGrid> on_grid;
+    std::vector<std::uint8_t> elsewhere;  ///< (components) 1: on a grid; empty: none is
+};
+
+/// The components that are solved on grids, and what that takes; kept between steps for its memory.
+struct GridSolves {
+    SolvePlan plan;
+    struct Grid {
+        GridSystem system;
+        GridCgWorkspace cg;
+        ComponentSolve solve;
+        bool solved = false;
+    };
+    std::vector<std::unique_ptr<Grid>> grids;  ///< one per component solved on a grid
+    std::vector<std::uint8_t> touched;         ///< (components) 1: springs of self-collision in it
+};
+
+/// What a step's linear system is made of.
+struct StepSystem {
+    std::span<const GridSprings> grids;  ///< of the cloths; may be empty
+    std::span<const SpringFamily> families;
+    const Load& load;
+    const Components& components;
+    const Constraints& constraints;
+    std::span<const Vec3> guess;         ///< (particles) y, from which the solve starts [m/s]
+    double h;                            ///< s
+    const Stitches* stitches = nullptr;  ///< of the cloths, which aggregates reach across
+};
+
+/// Plans which solver each component gets and assembles A and b (Eq. 5) for it: rows in `rows`, which for a
+/// component that is solved on a grid holds those of its constrained particles only.
+void assemble_components(const StepSystem& step, const SolveOptions& options, GridSolves& grids,
+                         System& rows);
+
+/// Solves what assemble_components() left, under the constraints (Eq. 9), each component a task of its own:
+/// the largest first and in parallel inside, the small ones in the gaps that they leave. Δv in ws.x, (rows).
+///   out   (components)
+void solve_components(const StepSystem& step, const SolveOptions& options, GridSolves& grids, System& rows,
+                      SolveWorkspace& ws, std::vector<ComponentSolve>& out);
+
+}  // namespace unravel::sim
