@@ -1,6 +1,7 @@
-// Frames against stored ones. tests/golden was drawn by llvmpipe (LLVM 15.0.6, 256 bits), Mesa 22.3.6, whose
-// pixels do not depend on its thread count: there both differences are zero. UNRAVEL_WRITE_GOLDEN=1 draws
-// them anew.
+// Frames against stored ones. tests/golden was drawn by llvmpipe (LLVM 15.0.6, 256 bits), Mesa 22.3.6. Its
+// pixels do not depend on its thread count, but the processor's own approximations of reciprocals and square
+// roots enter them: the same Mesa on another maker's processor was seen to move 281 of 57,600 pixels by one
+// step of 255. UNRAVEL_WRITE_GOLDEN=1 draws them anew.
 #include <cstdlib>
 #include <filesystem>
 
@@ -62,7 +63,8 @@ void check_golden(const char* name, DrawStyle style, int samples) {
                                 << drawn);
     if (context->version().find("Mesa 22.3.6") != std::string::npos &&
         context->renderer().find("llvmpipe (LLVM 15.0.6, 256 bits)") != std::string::npos) {
-        CHECK(difference.most == 0);
+        CHECK(difference.most <= 2);
+        CHECK(difference.mean <= 0.02);
     } else {
         // Elsewhere samples and rounding may move single pixels of an outline, but not the picture.
         CHECK(difference.most <= 128);

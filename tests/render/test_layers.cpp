@@ -37,7 +37,9 @@ TEST_CASE("GL_a_transparent_frame_has_the_opaque_ones_colours_and_alpha_where_sh
             }
         CHECK(solid > 1000);
         CHECK(rim > 50);
-        CHECK(worst <= 1);
+        // Each of the two rounds to a step of its own, and where it is split by an approximate reciprocal of
+        // alpha (the processor's) it may come to the next one.
+        CHECK(worst <= 2);
     }
 }
 
