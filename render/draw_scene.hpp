@@ -1,7 +1,7 @@
 #pragma once
 
 // What the renderer is given: plain geometry and colours. It knows nothing of springs or solvers;
-// tool/view.cpp makes these values from a scene and a simulated frame.
+// tool/picture/view.cpp makes these values from a scene and a simulated frame.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
 
 namespace unravel::tool {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "tool/names.hpp"
-#include "tool/options.hpp"
+#include "tool/base/names.hpp"
+#include "tool/base/options.hpp"
 
 namespace unravel::tool {
 

@@ -3,7 +3,7 @@
 #include <limits>
 #include <span>
 
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
 
 namespace unravel::tool {
 

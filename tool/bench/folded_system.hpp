@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "sim/step/solve_components.hpp"
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
 
 namespace unravel::tool {
 

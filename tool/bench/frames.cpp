@@ -18,8 +18,8 @@
 #include "sim/run/simulate.hpp"
 #include "sim/scene_file/load.hpp"
 #include "source_dir.hpp"
-#include "tool/clip.hpp"
-#include "tool/view.hpp"
+#include "tool/picture/clip.hpp"
+#include "tool/picture/view.hpp"
 
 namespace unravel::tool {
 

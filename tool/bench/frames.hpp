@@ -6,8 +6,8 @@
 
 #include "render/gl_context.hpp"
 #include "sim/scene/scene.hpp"
-#include "tool/names.hpp"
-#include "tool/options.hpp"
+#include "tool/base/names.hpp"
+#include "tool/base/options.hpp"
 
 namespace unravel::tool {
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "tool/base/names.hpp"
 #include "tool/bench/measured_problem.hpp"
-#include "tool/names.hpp"
 
 namespace unravel::tool {
 

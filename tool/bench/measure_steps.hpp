@@ -3,8 +3,8 @@
 #include <array>
 #include <utility>
 
+#include "tool/base/names.hpp"
 #include "tool/bench/measured_problem.hpp"
-#include "tool/names.hpp"
 
 namespace unravel::tool {
 

@@ -4,9 +4,9 @@
 
 #include "sim/run/simulate.hpp"
 #include "sim/step/stage.hpp"
+#include "tool/base/names.hpp"
 #include "tool/bench/folded_system.hpp"
 #include "tool/bench/speed.hpp"
-#include "tool/names.hpp"
 
 namespace unravel::tool {
 

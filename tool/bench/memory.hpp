@@ -1,8 +1,8 @@
 #pragma once
 
 #include "sim/run/simulate.hpp"
+#include "tool/base/names.hpp"
 #include "tool/bench/speed.hpp"
-#include "tool/names.hpp"
 
 namespace unravel::tool {
 

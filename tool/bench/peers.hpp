@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
+#include "tool/base/names.hpp"
 #include "tool/bench/folded_system.hpp"
-#include "tool/names.hpp"
 
 namespace unravel::tool {
 

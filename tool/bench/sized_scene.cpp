@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "sim/scene_file/load.hpp"
-#include "tool/render_options.hpp"
+#include "tool/base/exit.hpp"
 
 namespace unravel::tool {
 

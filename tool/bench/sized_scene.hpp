@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/scene/scene.hpp"
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
 
 namespace unravel::tool {
 

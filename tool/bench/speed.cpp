@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tool/base/machine.hpp"
 #include "tool/bench/measure_solves.hpp"
 #include "tool/bench/measure_steps.hpp"
 #include "tool/bench/measured_problem.hpp"
@@ -12,7 +13,6 @@
 #include "tool/bench/peers.hpp"
 #include "tool/bench/sized_scene.hpp"
 #include "tool/bench/triad.hpp"
-#include "tool/machine.hpp"
 
 namespace unravel::tool {
 

@@ -9,10 +9,10 @@
 
 #include "sim/model/report.hpp"
 #include "sim/scene/scene.hpp"
+#include "tool/base/names.hpp"
+#include "tool/base/spread.hpp"
 #include "tool/bench/account.hpp"
 #include "tool/bench/fit.hpp"
-#include "tool/names.hpp"
-#include "tool/spread.hpp"
 
 namespace unravel::tool {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "tool/base/names.hpp"
 #include "tool/bench/speed.hpp"
-#include "tool/names.hpp"
 #include "tool/plot/plot.hpp"
 
 namespace unravel::tool {

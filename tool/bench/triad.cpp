@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/rows/versions.hpp"
-#include "tool/spread.hpp"
+#include "tool/base/spread.hpp"
 
 namespace unravel::tool {
 

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
 
 namespace unravel::tool {
 

@@ -11,11 +11,11 @@
 
 #include "base/file_errors.hpp"
 #include "base/whole_file.hpp"
+#include "tool/base/interrupt.hpp"
+#include "tool/base/progress.hpp"
 #include "tool/cluster/job_script.hpp"
 #include "tool/cluster/slurm.hpp"
-#include "tool/interrupt.hpp"
-#include "tool/progress.hpp"
-#include "tool/run_folder.hpp"
+#include "tool/folder/run_folder.hpp"
 
 namespace unravel::tool {
 

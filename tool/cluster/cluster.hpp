@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tool/names.hpp"
-#include "tool/options.hpp"
+#include "tool/base/names.hpp"
+#include "tool/base/options.hpp"
 
 namespace unravel::tool {
 

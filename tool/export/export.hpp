@@ -9,7 +9,7 @@
 #include "sim/model/model.hpp"
 #include "sim/model/surface.hpp"
 #include "sim/run/frame_record.hpp"
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
 
 namespace unravel::tool {
 

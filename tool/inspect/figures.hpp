@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "tool/base/names.hpp"
 #include "tool/inspect/inspected.hpp"
 #include "tool/inspect/pattern.hpp"
-#include "tool/names.hpp"
 #include "tool/plot/plot.hpp"
 
 namespace unravel::tool {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "tool/render_options.hpp"
-#include "tool/view.hpp"
+#include "tool/base/exit.hpp"
+#include "tool/picture/view.hpp"
 
 namespace unravel::tool {
 

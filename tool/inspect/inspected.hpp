@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "sim/run/simulate.hpp"
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
+#include "tool/folder/run_folder.hpp"
 #include "tool/report/component_table.hpp"
-#include "tool/run_folder.hpp"
 
 namespace unravel::tool {
 

@@ -4,7 +4,7 @@
 
 #include "sim/linear/system.hpp"
 #include "sim/step/stage.hpp"
-#include "tool/render_options.hpp"
+#include "tool/base/exit.hpp"
 
 namespace unravel::tool {
 

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tool/base/names.hpp"
 #include "tool/inspect/inspected.hpp"
-#include "tool/names.hpp"
 
 namespace unravel::tool {
 

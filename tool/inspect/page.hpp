@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "tool/base/names.hpp"
 #include "tool/inspect/figures.hpp"
-#include "tool/names.hpp"
 
 namespace unravel::tool {
 

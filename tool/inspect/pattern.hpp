@@ -8,7 +8,7 @@
 #include "render/image.hpp"
 #include "sim/linear/components.hpp"
 #include "sim/model/model.hpp"
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
 
 namespace unravel::tool {
 

@@ -8,7 +8,7 @@
 
 #include "render/draw_scene.hpp"
 #include "render/image.hpp"
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
 
 namespace unravel::tool {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "render/image.hpp"
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
 
 namespace unravel::tool {
 

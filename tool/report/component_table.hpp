@@ -7,7 +7,7 @@
 #include "render/draw_scene.hpp"
 #include "sim/model/model.hpp"
 #include "sim/run/frame_record.hpp"
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
 
 namespace unravel::tool {
 

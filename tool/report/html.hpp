@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
 
 namespace unravel::tool {
 

@@ -8,7 +8,7 @@
 #include "base/whole_file.hpp"
 #include "sim/model/effects.hpp"
 #include "sim/scene_file/load.hpp"
-#include "tool/progress.hpp"
+#include "tool/base/progress.hpp"
 #include "tool/report/html.hpp"
 #include "tool/report/page_files.hpp"
 #include "tool/report/series.hpp"

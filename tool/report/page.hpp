@@ -10,11 +10,11 @@
 #include "sim/model/model.hpp"
 #include "sim/run/frame_record.hpp"
 #include "sim/scene/scene.hpp"
-#include "tool/clip.hpp"
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
+#include "tool/folder/run_folder.hpp"
+#include "tool/picture/clip.hpp"
 #include "tool/report/component_table.hpp"
 #include "tool/report/preview.hpp"
-#include "tool/run_folder.hpp"
 
 namespace unravel::tool {
 

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
 
 namespace unravel::tool {
 

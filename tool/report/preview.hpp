@@ -8,7 +8,7 @@
 
 #include "base/spool.hpp"
 #include "render/image.hpp"
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
 
 namespace unravel::tool {
 

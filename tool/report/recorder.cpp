@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "tool/picture/view.hpp"
 #include "tool/report/page.hpp"
-#include "tool/view.hpp"
 
 namespace unravel::tool {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "tool/progress.hpp"
+#include "tool/base/progress.hpp"
 
 namespace unravel::tool {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/model/report.hpp"
-#include "tool/names.hpp"
+#include "tool/base/names.hpp"
 #include "tool/report/page.hpp"
 
 namespace unravel::tool {

@@ -1,0 +1,146 @@
+// unravel run SCENE ... and unravel simulate SCENE ...: the main job, with and without pictures.
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "base/whole_file.hpp"
+#include "sim/scene_file/load.hpp"
+#include "sim/step/explicit_limit.hpp"
+#include "tool/base/interrupt.hpp"
+#include "tool/base/options.hpp"
+#include "tool/base/progress.hpp"
+#include "tool/cli/render_options.hpp"
+#include "tool/cli/scene_list.hpp"
+#include "tool/folder/folder_lock.hpp"
+#include "tool/picture/clip.hpp"
+#include "tool/report/page.hpp"
+#include "tool/run/failure_bundle.hpp"
+#include "tool/run/run_json.hpp"
+#include "tool/run/run_source.hpp"
+
+namespace unravel::tool {
+
+namespace {
+
+// Threads beyond the simulation's own: drawing, writing and encoding wait on other things for much of their
+// time.
+constexpr int pipeline_threads = 3;
+
+int thread_count(const Options& options) {
+    return options.threads > 0 ? options.threads
+                               : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+void print_summary(const Options& options, const RunFolder& folder, const nlohmann::ordered_json& json) {
+    if (options.json) {
+        fmt::print("{}\n", json.dump(2));
+        return;
+    }
+    if (options.quiet) return;
+    const auto& totals = json["totals"];
+    fmt::print("{}: {} frames, {} steps, {} particles", json["status"].get<std::string>(),
+               json["frames"].get<int>(), json["steps"].get<int>(), json["particles"].get<int>());
+    if (totals.contains("rvm_saved"))
+        fmt::print(", {:.1f}% fewer RVMs than whole", 100 * totals["rvm_saved"].get<double>());
+    fmt::print("\n");
+    if (json.contains("videos")) {
+        for (const auto& video : json["videos"])
+            fmt::print("  {}\n", (folder.root / video.get<std::string>()).string());
+    }
+    fmt::print("  {}\n  {}\n", folder.stats().string(), folder.report().string());
+}
+
+int make_run(const Options& options, bool pictures) {
+    const auto begin = std::chrono::steady_clock::now();
+    const InterruptWatch watch;
+    Scene scene = load_scene(options.scene, options.overrides);
+    const RunFolder folder{options.output.empty() ? std::filesystem::path("output") / scene.name
+                                                  : options.output};
+    ClipOptions clip_options = clip_options_of(options, scene);
+    // Relative to nothing would mean that there are none.
+    clip_options.textures = options.scene.has_parent_path() ? options.scene.parent_path() : ".";
+    Simulation simulation = start_simulation(scene);
+    simulation.options.compare_whole = options.compare_whole;
+    if (!options.allow_unstable)
+        require_explicit_stability(simulation.model, simulation.options, scene.solver.step);
+    if (pictures) check_clip(scene, folder, clip_options);
+
+    const Existing existing = options.force    ? Existing::replace
+                              : options.resume ? Existing::resume
+                                               : Existing::refuse;
+    const FolderLock lock(folder.root);
+    const std::uint64_t hash = open_run(folder, scene, existing, clip_options.textures);
+
+    const int threads = thread_count(options);
+    const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,
+                                          static_cast<std::size_t>(threads + pipeline_threads));
+    const int cached =
+        cached_frames(folder, scene, hash, simulation.model.size(), simulation.model.springs.size());
+    clip_options.reuse_pictures = existing == Existing::resume;
+    RunSource source(scene, folder, hash, simulation, cached, threads);
+    PageRecorder recorder(simulation.model, folder.root);
+    Previews previews = previews_of(scene, clip_options, folder.root);
+    if (pictures) {
+        clip_options.picture = take_previews(previews);
+    }
+    // A run that can't go on ends its clip as one that was stopped does: what it has is kept.
+    std::optional<SimulationError> failure;
+    const FrameSource next = [&]() -> std::optional<FrameRecord> {
+        // Nothing beyond the last frame asked for is computed.
+        if (static_cast<int>(recorder.frames().size()) > clip_options.last) return std::nullopt;
+        try {
+            std::optional<FrameRecord> record = source.next();
+            if (record) recorder.see(*record);
+            return record;
+        } catch (const SimulationError& error) {
+            failure = error;
+            return std::nullopt;
+        }
+    };
+
+    Progress progress(scene.name, scene.clip.frames(), options.quiet);
+    const auto done = [&](int frame) { progress.show(frame + 1, std::min(cached, frame + 1)); };
+    std::optional<ClipReport> report;
+    const auto conclude = [&](const char* status) {
+        progress.finish();
+        source.write_stats();
+        nlohmann::ordered_json json =
+            run_json(scene, simulation, source, threads, status, report ? &*report : nullptr);
+        if (!options.words.empty()) json["command"] = command_of_run(options);
+        json["wall_seconds"] =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        write_whole_file(folder.run_json(), json.dump(2) + "\n");
+        write_report_page(scene, simulation.model, folder, recorder, source.reports(), previews,
+                          page_facts(json));
+        print_summary(options, folder, json);
+    };
+    if (pictures) {
+        Placement placement;
+        build_model(scene, placement);
+        report = make_clip(scene, simulation.model, placement, folder, clip_options, next, done);
+    } else {
+        while (const std::optional<FrameRecord> record = next()) done(record->frame);
+    }
+    if (failure) {
+        write_failure(folder, scene, hash, simulation, *failure, clip_options);
+        conclude("failed");
+        throw *failure;
+    }
+    conclude(InterruptWatch::requested() ? "interrupted" : "complete");
+    return InterruptWatch::requested() ? exit_interrupted : exit_done;
+}
+
+}  // namespace
+
+int command_run(const Options& options) {
+    return for_each_scene(options, [](const Options& one) { return make_run(one, true); });
+}
+int command_simulate(const Options& options) {
+    return for_each_scene(options, [](const Options& one) { return make_run(one, false); });
+}
+
+}  // namespace unravel::tool

@@ -1,0 +1,71 @@
+#include "tool/cli/guarded.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "base/file_errors.hpp"
+#include "render/gl_context.hpp"
+#include "render/video.hpp"
+#include "sim/scene_file/load.hpp"
+#include "sim/step/explicit_limit.hpp"
+#include "sim/step/step.hpp"
+#include "tool/base/options.hpp"
+#include "tool/cli/render_options.hpp"
+#include "tool/cluster/cluster.hpp"
+#include "tool/folder/run_folder.hpp"
+
+namespace unravel::tool {
+
+namespace {
+
+OutputError no_standard_output() {
+    return OutputError("standard output", "nobody reads it, or its disk is full");
+}
+
+}  // namespace
+
+int guarded(const std::function<int()>& command) {
+    // Not fmt::print: it throws where standard error is closed, and the exit code is to be right even then.
+    const auto say = [](const std::string& text) { std::fputs(text.c_str(), stderr); };
+    const auto failed = [&](const std::exception& error, int code) {
+        say(fmt::format("unravel: {}\n", error.what()));
+        return code;
+    };
+    try {
+        const int code = command();
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw no_standard_output();
+        return code;
+    } catch (const SceneError& error) {
+        // Its text is a list of located problems, to be read by editors as it is.
+        say(fmt::format("{}\n", error.what()));
+        return exit_scene;
+    } catch (const UnstableStep& error) {
+        return failed(error, exit_scene);
+    } catch (const UsageError& error) {
+        return failed(error, exit_usage);
+    } catch (const FolderError& error) {
+        return failed(error, exit_usage);
+    } catch (const DeviceChoiceError& error) {
+        return failed(error, exit_usage);
+    } catch (const VideoSettingsError& error) {
+        return failed(error, exit_usage);
+    } catch (const RendererError& error) {
+        return failed(error, exit_no_renderer);
+    } catch (const VideoError& error) {
+        return failed(error, exit_no_renderer);
+    } catch (const MissingPieces& error) {
+        return failed(error, exit_simulation);
+    } catch (const SimulationError& error) {
+        return failed(error, exit_simulation);
+    } catch (const std::bad_alloc&) {
+        say("unravel: memory ran out; `unravel check` tells what a scene needs\n");
+        return exit_output;
+    } catch (const std::exception& error) {
+        // fmt::print's words for standard output name no file.
+        if (std::ferror(stdout) != 0) return failed(no_standard_output(), exit_output);
+        return failed(error, exit_output);
+    }
+}
+
+}  // namespace unravel::tool

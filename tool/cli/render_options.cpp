@@ -1,0 +1,130 @@
+#include "tool/cli/render_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+
+namespace unravel::tool {
+
+namespace {
+
+// Two whole numbers with `separator` between them.
+bool parse_pair(std::string_view text, char separator, int& a, int& b) {
+    const std::size_t at = text.find(separator);
+    if (at == text.npos) return false;
+    const auto whole = [](std::string_view part, int& value) {
+        const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+        return error == std::errc() && end == part.data() + part.size();
+    };
+    return whole(text.substr(0, at), a) && whole(text.substr(at + 1), b);
+}
+
+// What the command line says about looks goes before what the scene says.
+void apply_look(const Options& options, Look& look) {
+    static constexpr std::string_view shows[] = {"components", "splitting", "strain", "velocity", "contact"};
+    if (!options.show.empty())
+        look.show = static_cast<Show>(std::ranges::find(shows, options.show) - std::begin(shows));
+    look.legend = look.legend || options.legend;
+    look.transparent = look.transparent || options.transparent;
+    if (options.motion_blur > 0) look.motion_blur = options.motion_blur;
+    if (options.subdivide >= 0) look.subdivide = options.subdivide;
+}
+
+std::vector<std::string> split(const std::string& list) {
+    std::vector<std::string> parts(1);
+    for (const char c : list)
+        if (c == ',')
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    return parts;
+}
+
+std::vector<Layout> layouts_of(const std::string& style) {
+    std::vector<Layout> layouts;
+    for (const std::string& part : split(style)) {
+        if (part == "both") {
+            layouts.insert(layouts.end(), {Layout::textured, Layout::components});
+            continue;
+        }
+        const auto is_named = [&](Layout layout) {
+            std::string name = layout_name(layout);
+            std::ranges::replace(name, '_', '-');
+            return name == part;
+        };
+        const auto* const found = std::ranges::find_if(all_layouts, is_named);
+        if (found == std::end(all_layouts))
+            throw UsageError(fmt::format(
+                "--style {}: there is textured, components, both, overlay and side-by-side", part));
+        layouts.push_back(*found);
+    }
+    return layouts;
+}
+
+std::vector<std::size_t> cameras_of(const std::string& names, const Scene& scene) {
+    std::vector<std::size_t> cameras;
+    if (names.empty()) return {0};
+    if (names == "all") {
+        for (std::size_t k = 0; k < scene.cameras.size(); ++k) cameras.push_back(k);
+        return cameras;
+    }
+    for (const std::string& name : split(names)) {
+        const auto found = std::ranges::find(scene.cameras, name, &Camera::name);
+        if (found == scene.cameras.end()) {
+            std::string there;
+            for (const Camera& camera : scene.cameras) there += (there.empty() ? "" : ", ") + camera.name;
+            throw UsageError(fmt::format("--camera {}: the scene has {}", name, there));
+        }
+        cameras.push_back(static_cast<std::size_t>(found - scene.cameras.begin()));
+    }
+    return cameras;
+}
+
+void set_frames(const Options& options, const Scene& scene, ClipOptions& clip) {
+    const int last = scene.clip.frames() - 1;
+    clip.last = last;
+    if (!options.frames.empty()) {
+        const bool pair = parse_pair(options.frames, '-', clip.first, clip.last);
+        if (!pair || clip.first < 0 || clip.last < clip.first || clip.last > last)
+            throw UsageError(fmt::format("--frames {}: write it as A-B within 0-{}", options.frames, last));
+    }
+    if (options.still < 0) return;
+    if (options.still > last || !options.frames.empty())
+        throw UsageError(fmt::format("--still {}: one frame of 0-{}, without --frames", options.still, last));
+    clip.first = clip.last = options.still;
+}
+
+}  // namespace
+
+ClipOptions clip_options_of(const Options& options, Scene& scene) {
+    ClipOptions clip;
+    apply_look(options, scene.look);
+    if (!options.size.empty() && !parse_pair(options.size, 'x', scene.clip.size[0], scene.clip.size[1]))
+        throw UsageError(fmt::format("--size {}: write it as 1920x1080", options.size));
+    clip.views.clear();
+    for (const std::size_t camera : cameras_of(options.camera, scene)) {
+        for (const Layout layout : layouts_of(options.style)) {
+            const ClipView view = make_view(scene, layout, camera);
+            if (std::ranges::find(clip.views, view.name, &ClipView::name) != clip.views.end())
+                throw UsageError(fmt::format("--style, --camera: two views would be named {}", view.name));
+            clip.views.push_back(view);
+        }
+    }
+    set_frames(options, scene, clip);
+    clip.device = parse_device_choice(options.device);
+    clip.samples = options.samples;
+    clip.supersample = options.supersample;
+    const bool still = options.still >= 0 && options.turntable == 0;
+    const std::string usual = still ? "none" : scene.look.transparent ? "mkv" : "mp4";
+    const std::string video = options.video.empty() ? usual : options.video;
+    clip.video_ending = video == "none" ? "" : "." + video;
+    clip.codec = options.codec;
+    clip.preset = options.preset;
+    clip.crf = options.crf;
+    clip.keep_pictures = options.pictures;
+    return clip;
+}
+
+}  // namespace unravel::tool

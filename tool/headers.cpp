@@ -1,0 +1,1 @@
+// Nothing but the headers that every room includes (CMakeLists.txt beside this file).

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <tbb/concurrent_queue.h>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "render/palette.hpp"
+#include "render/renderer.hpp"
+#include "tool/base/names.hpp"
+#include "tool/picture/clip.hpp"
+#include "tool/picture/legend.hpp"
+#include "tool/picture/render_thread.hpp"
+
+namespace unravel::tool {
+
+/// Frames between source and end of the pipeline at any time: one per stage and one to take up unevenness.
+inline constexpr std::size_t frames_under_way = 5;
+
+/// A frame on its way. Reused, so that a long clip allocates no more than a short one.
+struct Passage {
+    FrameRecord record;
+    std::vector<DrawFrame> exposures;
+    std::vector<Image> pictures;  ///< (views)
+    std::vector<Image> parts;     ///< (shots) drawn for a view of several, where no view is that shot alone
+};
+
+/// Context and renderer, made, used and destroyed on the thread that owns them.
+class DrawingRoom {
+public:
+    /// `scene` must outlive the room. Throws RendererError.
+    DrawingRoom(const DrawScene& scene, const DeviceChoice& device, const RenderSettings& settings);
+    ~DrawingRoom();
+    DrawingRoom(const DrawingRoom&) = delete;
+    DrawingRoom& operator=(const DrawingRoom&) = delete;
+
+    /// Does `work` on the thread and waits for it; what it throws is thrown here.
+    void run(std::function<void()> work) { thread_.run(std::move(work)); }
+    const GlContext& context() const { return *context_; }
+    Renderer& renderer() { return *renderer_; }
+
+private:
+    RenderThread thread_;
+    std::unique_ptr<GlContext> context_;
+    std::unique_ptr<Renderer> renderer_;
+};
+
+/// Everything between a frame record and its files: the stages of make_clip()'s pipeline. Stages of one frame
+/// follow each other; each stage but write() works on one frame at a time.
+class Studio {
+public:
+    Studio(const Scene& scene, const ClothModel& model, const Placement& placement, const RunFolder& folder,
+           const ClipOptions& options);
+    Studio(const Studio&) = delete;
+    Studio& operator=(const Studio&) = delete;
+
+    Passage* take(const FrameSource& source);  ///< null: the clip is over
+    void draw(Passage& passage);
+    void write(Passage& passage);
+    void encode(Passage& passage);
+    void release(Passage* passage);
+    ClipReport finish();
+
+private:
+    void plan_shots();
+    void claim();
+    void see(const FrameRecord& record);
+    bool lies_there(const Passage& passage, std::size_t view) const;
+    bool take_over(const Passage& passage, std::size_t view, Image& picture) const;
+    Image& image_of(Passage& passage, std::size_t shot) const;
+    void draw_shot(Passage& passage, std::size_t shot);
+    void compose(Passage& passage, std::size_t view) const;
+
+    const Scene& scene_;
+    const ClothModel& model_;
+    const RunFolder& folder_;
+    const ClipOptions& options_;
+    std::vector<Shot> shots_;     // each drawn once a frame
+    std::vector<int> shot_view_;  // (shots) the view that is this shot alone; −1: none
+    std::vector<std::vector<std::size_t>> view_shots_;  // (views)
+    std::vector<std::array<std::uint32_t, 2>> edges_;
+    std::vector<char> reusable_;  // (views) pictures that lie there may be taken over
+    ComponentColors colors_;
+    ClothState previous_;  // of the frame before, where pictures are blurred by motion
+    bool has_previous_ = false;
+    DrawScene drawn_;
+    DrawingRoom room_;
+    std::unique_ptr<Legend> legend_;  // used on the room's thread
+    std::vector<std::unique_ptr<VideoWriter>> videos_;
+    std::array<Passage, frames_under_way> passages_;
+    tbb::concurrent_bounded_queue<Passage*> free_;
+    std::mutex mutex_;  // of report_.write: pictures are written by several tasks at once
+    ClipReport report_;
+};
+
+/// The encoder's settings for a view of these options.
+VideoSettings video_settings(const Scene& scene, const ClipOptions& options, Layout layout);
+
+}  // namespace unravel::tool

@@ -1,0 +1,384 @@
+#include "tool/picture/view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <stdexcept>
+
+#include "render/png.hpp"
+#include "sim/mesh/mesh_cloth.hpp"
+#include "sim/mesh/mesh_solid.hpp"
+#include "sim/model/surface.hpp"
+#include "sim/solids/motion.hpp"
+#include "tool/picture/subdivision.hpp"
+#include "tool/picture/wire_colors.hpp"
+
+namespace unravel::tool {
+
+namespace {
+
+WeavePattern pattern_of(Weave weave) {
+    switch (weave) {
+        case Weave::plain:
+            return WeavePattern::plain;
+        case Weave::twill:
+            return WeavePattern::twill;
+        case Weave::checks:
+            return WeavePattern::checks;
+        case Weave::stripes:
+            return WeavePattern::stripes;
+        case Weave::solid:
+            return WeavePattern::solid;
+    }
+    return WeavePattern::plain;
+}
+
+SolidShape shape_of(Shape shape) {
+    switch (shape) {
+        case Shape::plane:
+            return SolidShape::plane;
+        case Shape::sphere:
+            return SolidShape::sphere;
+        case Shape::box:
+            return SolidShape::box;
+        case Shape::cylinder:
+            return SolidShape::cylinder;
+        case Shape::capsule:
+            return SolidShape::capsule;
+        case Shape::mesh:
+            return SolidShape::mesh;
+    }
+    return SolidShape::sphere;
+}
+
+// The grid as triangles. A tube's seam column is doubled, so that uv runs on to the full circumference there.
+// `level`: of subdivision; the finer grid's points then stand at `first` in DrawFrame::positions.
+ClothMesh mesh_of(const ClothPatch& patch, const ClothAppearance& appearance, int level, std::size_t first) {
+    ClothMesh mesh;
+    mesh.appearance = appearance;
+    const int factor = 1 << level, columns = factor * patch.cells_u() + 1,
+              rows = factor * patch.cells_v() + 1;
+    const int points = patch.tube ? columns - 1 : columns;
+    const float du = static_cast<float>(patch.size[0] / std::max(columns - 1, 1));
+    const float dv = static_cast<float>(patch.size[1] / std::max(rows - 1, 1));
+    for (int j = 0; j < rows; ++j) {
+        for (int i = 0; i < columns; ++i) {
+            mesh.particle.push_back(level == 0 ? patch.at(i, j)
+                                               : static_cast<std::uint32_t>(first + j * points + i % points));
+            mesh.uv.push_back({du * static_cast<float>(i), dv * static_cast<float>(j)});
+        }
+    }
+    const auto vertex = [&](int i, int j) { return static_cast<std::uint32_t>(j * columns + i); };
+    for (int j = 0; j + 1 < rows; ++j) {
+        for (int i = 0; i + 1 < columns; ++i) {
+            const std::uint32_t a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i + 1, j + 1),
+                                d = vertex(i, j + 1);
+            // u along +x, v along +z: counter-clockwise as seen from the front (+y). Diagonals alternate, so
+            // that the shading has no grain.
+            if ((i + j) % 2 == 0) {
+                mesh.triangles.push_back({a, d, c});
+                mesh.triangles.push_back({a, c, b});
+            } else {
+                mesh.triangles.push_back({a, d, b});
+                mesh.triangles.push_back({b, d, c});
+            }
+        }
+    }
+    return mesh;
+}
+
+// Texture coordinates for a mesh that has none: its rest shape seen along the axis that it is thinnest on.
+// [m]
+Vec2 seen_flat(const MeshCloth& mesh, const Vec3& x) {
+    Eigen::Index thin = 0;
+    mesh.extent().minCoeff(&thin);
+    return thin == 0 ? Vec2(x.z(), x.y()) : thin == 1 ? Vec2(x.x(), x.z()) : Vec2(x.x(), x.y());
+}
+
+// A mesh as triangles. A vertex with several texture coordinates becomes a display vertex for each.
+ClothMesh mesh_of_faces(const ClothPatch& patch, const ClothAppearance& appearance) {
+    ClothMesh mesh;
+    mesh.appearance = appearance;
+    const ClothSurface surface = surface_of(patch);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
+    const auto vertex = [&](const ClothSurface::Face& face, std::size_t k) {
+        const auto [found, is_new] =
+            known.try_emplace({face.vertex[k], face.uv[k]}, static_cast<std::uint32_t>(mesh.particle.size()));
+        if (is_new) {
+            const Vec2 uv = face.uv[k] == no_index
+                                ? seen_flat(*patch.mesh, patch.mesh->rest[face.vertex[k]])
+                                : Vec2(surface.uvs[face.uv[k]].cwiseProduct(surface.metres));
+            mesh.particle.push_back(patch.first + face.vertex[k]);
+            mesh.uv.push_back(uv.cast<float>());
+        }
+        return found->second;
+    };
+    for (const ClothSurface::Face& face : surface.faces) {
+        const std::uint32_t a = vertex(face, 0), b = vertex(face, 1), c = vertex(face, 2);
+        mesh.triangles.push_back({a, b, c});
+        if (face.corners == 4) mesh.triangles.push_back({a, c, vertex(face, 3)});
+    }
+    return mesh;
+}
+
+// A plane that faces straight up is drawn as the ground.
+bool is_ground(const Solid& solid) {
+    return solid.shape == Shape::plane && solid.motion.empty() &&
+           (rotation_from_degrees(solid.rotation) * Vec3::UnitY()).y() > 0.9999;
+}
+
+// Radius about its centre within which a solid is.
+double reach_of(const Solid& solid) {
+    if (solid.shape == Shape::mesh) return solid.geometry->reach;
+    if (solid.shape == Shape::box) return 0.5 * solid.size.norm();
+    return solid.shape == Shape::sphere ? solid.radius : solid.radius + 0.5 * solid.height;
+}
+
+float ground_height(const Scene& scene, const Placement& placement) {
+    if (scene.look.ground_height) return static_cast<float>(*scene.look.ground_height);
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const Solid& solid : scene.solids) {
+        if (is_ground(solid)) lowest = std::min(lowest, solid.center.y());
+    }
+    if (std::isfinite(lowest)) return static_cast<float>(lowest);
+    for (const Solid& solid : scene.solids) {
+        const double reach = reach_of(solid);
+        if (solid.shape != Shape::plane) lowest = std::min(lowest, solid.center.y() - reach);
+    }
+    // A hanging cloth may swing down to its own size below its highest point.
+    double highest = -std::numeric_limits<double>::infinity(), size = 0;
+    for (const Vec3& x : placement.x) highest = std::max(highest, x.y());
+    for (const Cloth& cloth : scene.cloths) size = std::max({size, cloth.size[0], cloth.size[1]});
+    return static_cast<float>(std::min(lowest, highest - 1.1 * size) - 0.02);
+}
+
+void set_bounds(const Scene& scene, const Placement& placement, DrawScene& out) {
+    Vec3f low = placement.x.front().cast<float>(), high = low;
+    const auto include = [&](const Vec3f& point) {
+        low = low.cwiseMin(point);
+        high = high.cwiseMax(point);
+    };
+    for (const Vec3& x : placement.x) include(x.cast<float>());
+    for (const Solid& solid : scene.solids) {
+        if (solid.shape == Shape::plane) continue;
+        const Vec3f r = Vec3f::Constant(static_cast<float>(reach_of(solid))), c = solid.center.cast<float>();
+        include(c - r);
+        include(c + r);
+    }
+    // What falls or swings ends on the ground, or nearly.
+    include({low.x(), out.ground_height, low.z()});
+    out.bounds_low = low;
+    out.bounds_high = high;
+}
+
+// Median rest length of the stretch springs.
+float spacing_of(const ClothModel& model) {
+    std::vector<double> rest(model.springs.stretch_count);
+    for (std::size_t s = 0; s < rest.size(); ++s) rest[s] = model.springs.rest[s];
+    if (rest.empty()) return DrawScene{}.spacing;
+    const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);
+    std::nth_element(rest.begin(), middle, rest.end());
+    return static_cast<float>(*middle);
+}
+
+}  // namespace
+
+Rgb parse_color(const std::string& text) {
+    const auto digits = text.find_first_not_of("0123456789abcdefABCDEF", 1);
+    if (text.size() != 7 || text[0] != '#' || digits != std::string::npos) {
+        throw std::invalid_argument("'" + text + "' is no colour: write it as #rrggbb");
+    }
+    const auto byte = [&](std::size_t at) {
+        return static_cast<std::uint8_t>(std::stoi(text.substr(at, 2), nullptr, 16));
+    };
+    return {byte(1), byte(3), byte(5)};
+}
+
+void check_textures(const Scene& scene, const std::filesystem::path& textures) {
+    for (const ClothLook& look : scene.look.cloth)
+        if (!look.texture.empty()) read_png(textures / look.texture);
+}
+
+DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Placement& placement,
+                          const std::filesystem::path& textures) {
+    DrawScene out;
+    std::size_t first = model.size();
+    for (std::size_t c = 0; c < model.cloths.size(); ++c) {
+        ClothAppearance appearance;
+        if (!scene.look.cloth.empty()) {
+            const ClothLook& look = scene.look.cloth[std::min(c, scene.look.cloth.size() - 1)];
+            appearance.weave = pattern_of(look.weave);
+            appearance.front = parse_color(look.front);
+            appearance.front_second = parse_color(look.front_second);
+            appearance.back = parse_color(look.back);
+            appearance.period = static_cast<float>(look.scale);
+            appearance.texture = look.texture;
+        }
+        const ClothPatch& patch = model.cloths[c];
+        const int level = display_level(scene.look, patch);
+        out.cloths.push_back(patch.grid() ? mesh_of(patch, appearance, level, first)
+                                          : mesh_of_faces(patch, appearance));
+        if (level > 0) first += FineGrid(patch, level).size();
+        if (!appearance.texture.empty() && !textures.empty())
+            out.cloths.back().texture = read_png(textures / appearance.texture);
+    }
+    out.edges = drawn_edges(model, scene.look.show);
+    out.transparent = scene.look.transparent;
+    out.spacing = spacing_of(model);
+    for (const Solid& solid : scene.solids) {
+        if (is_ground(solid)) continue;
+        SolidMesh mesh;
+        mesh.shape = shape_of(solid.shape);
+        mesh.radius = static_cast<float>(solid.radius);
+        mesh.height = static_cast<float>(solid.height);
+        mesh.round = static_cast<float>(solid.round);
+        mesh.size = solid.size.cast<float>();
+        if (solid.geometry) {
+            mesh.triangles = solid.geometry->triangles;
+            mesh.deforms = solid.geometry->deforms();
+            for (const Vec3& x : solid.geometry->rest) mesh.positions.push_back(x.cast<float>());
+        }
+        mesh.color = parse_color(solid.color.empty() ? scene.look.solid : solid.color);
+        out.solids.push_back(mesh);
+    }
+    out.background = parse_color(scene.look.background);
+    out.ground = parse_color(scene.look.ground);
+    out.show_ground = scene.look.show_ground;
+    out.ground_height = ground_height(scene, placement);
+    set_bounds(scene, placement, out);
+    return out;
+}
+
+std::vector<std::array<std::uint32_t, 2>> drawn_edges(const ClothModel& model, Show show) {
+    std::vector<std::array<std::uint32_t, 2>> edges(drawn_springs(model, show));
+    for (std::size_t s = 0; s < edges.size(); ++s) edges[s] = {model.springs.i[s], model.springs.j[s]};
+    return edges;
+}
+
+namespace {
+
+// Display vertices between particles follow the particles.
+void add_fine_grids(const Scene& scene, const ClothModel& model, DrawFrame& out) {
+    std::size_t first = model.size();
+    for (const ClothPatch& patch : model.cloths) {
+        const int level = display_level(scene.look, patch);
+        if (level == 0) continue;
+        FineGrid grid(patch, level);
+        out.positions.resize(first + grid.size());
+        out.particle_colors.resize(first + grid.size());
+        grid.points(std::span(out.positions).first(model.size()), std::span(out.positions).subspan(first));
+        grid.colors(std::span(out.particle_colors).first(model.size()),
+                    std::span(out.particle_colors).subspan(first));
+        first += grid.size();
+    }
+}
+
+void pose_solids(const Scene& scene, double t, DrawFrame& out) {
+    out.solid_poses.clear();
+    out.solid_positions.clear();
+    for (const Solid& solid : scene.solids) {
+        if (is_ground(solid)) continue;
+        out.solid_poses.push_back(solid_pose(solid, t).cast<float>());
+        std::vector<Vec3f>& positions = out.solid_positions.emplace_back();
+        if (!solid.geometry || !solid.geometry->deforms()) continue;
+        std::vector<Vec3> now;
+        solid.geometry->positions_at(t, now);
+        for (const Vec3& x : now) positions.push_back(x.cast<float>());
+    }
+}
+
+// Where a particle was at share s of the way from one frame to the next: Hermite's cubic through both places
+// with both velocities, h apart.
+Vec3 on_the_way(const ClothState& a, const ClothState& b, std::size_t p, double s, double h) {
+    const double s2 = s * s, s3 = s2 * s;
+    return (2 * s3 - 3 * s2 + 1) * a.x[p] + (s3 - 2 * s2 + s) * h * a.v[p] + (3 * s2 - 2 * s3) * b.x[p] +
+           (s3 - s2) * h * b.v[p];
+}
+
+}  // namespace
+
+double frame_time(const Scene& scene, int frame) {
+    return static_cast<double>(frame) / scene.clip.fps;
+}
+
+void make_draw_frame(const Scene& scene, const ClothModel& model, const FrameRecord& record,
+                     const std::vector<Rgb>& components, DrawFrame& out, std::size_t camera) {
+    out.positions.resize(model.size());
+    for (std::size_t p = 0; p < model.size(); ++p) out.positions[p] = record.state.x[p].cast<float>();
+    color_wires(scene.look, model, record, components, out);
+    add_fine_grids(scene, model, out);
+    pose_solids(scene, record.state.t, out);
+    out.camera = camera_at(scene, scene.cameras[camera], frame_time(scene, record.frame));
+}
+
+std::vector<double> exposure_times(const Scene& scene, int frame) {
+    const int count = frame == 0 ? 1 : scene.look.motion_blur;
+    if (count == 1) return {frame_time(scene, frame)};
+    std::vector<double> times;
+    for (int k = 0; k < count; ++k)
+        times.push_back(frame_time(scene, frame) -
+                        scene.look.shutter / scene.clip.fps * (1 - (k + 0.5) / count));
+    return times;
+}
+
+void make_exposures(const Scene& scene, const ClothModel& model, const FrameRecord& record,
+                    const ClothState* previous, const std::vector<Rgb>& components,
+                    std::vector<DrawFrame>& out) {
+    const std::vector<double> times = exposure_times(scene, previous ? record.frame : 0);
+    out.resize(times.size());
+    if (times.size() == 1) return make_draw_frame(scene, model, record, components, out[0]);
+    // A frame that stands still, as on a turntable, was nowhere else.
+    const double h = record.state.t - previous->t, pace = h > 0 ? 1 : 0;
+    for (std::size_t e = 0; e < times.size(); ++e) {
+        DrawFrame& frame = out[e];
+        const double before = pace * (frame_time(scene, record.frame) - times[e]);
+        const double s = h > 0 ? 1 - before / h : 1;
+        frame.positions.resize(model.size());
+        for (std::size_t p = 0; p < model.size(); ++p)
+            frame.positions[p] = on_the_way(*previous, record.state, p, s, h).cast<float>();
+        color_wires(scene.look, model, record, components, frame);
+        add_fine_grids(scene, model, frame);
+        pose_solids(scene, record.state.t - before, frame);
+    }
+}
+
+namespace {
+
+// Catmull–Rom through unevenly spaced keys, at rest in the first and the last one.
+template <class Value>
+Vec3 through_keys(const std::vector<Camera::Key>& keys, double t, Value&& value) {
+    const std::size_t last = keys.size() - 1;
+    const auto slope = [&](std::size_t k) -> Vec3 {
+        if (k == 0 || k == last) return Vec3::Zero();
+        return (value(keys[k + 1]) - value(keys[k - 1])) / (keys[k + 1].time - keys[k - 1].time);
+    };
+    if (t <= keys.front().time) return value(keys.front());
+    if (t >= keys.back().time) return value(keys.back());
+    std::size_t k = 0;
+    while (keys[k + 1].time <= t) ++k;
+    const double h = keys[k + 1].time - keys[k].time, s = (t - keys[k].time) / h, s2 = s * s, s3 = s2 * s;
+    return (2 * s3 - 3 * s2 + 1) * value(keys[k]) + (s3 - 2 * s2 + s) * h * slope(k) +
+           (3 * s2 - 2 * s3) * value(keys[k + 1]) + (s3 - s2) * h * slope(k + 1);
+}
+
+}  // namespace
+
+CameraView camera_at(const Scene& scene, const Camera& camera, double t) {
+    Vec3 position = camera.position, target = camera.target;
+    if (!camera.keyframes.empty()) {
+        position = through_keys(camera.keyframes, t, [](const Camera::Key& key) { return key.position; });
+        target = through_keys(camera.keyframes, t, [](const Camera::Key& key) { return key.target; });
+    }
+    if (camera.orbit != 0) {
+        const double angle = camera.orbit * std::numbers::pi / 180.0 * t / scene.clip.duration;
+        position = target + Eigen::AngleAxisd(angle, Vec3::UnitY()) * (position - target);
+    }
+    CameraView view;
+    view.position = position.cast<float>();
+    view.target = target.cast<float>();
+    view.fov = static_cast<float>(camera.fov);
+    return view;
+}
+
+}  // namespace unravel::tool

@@ -1,0 +1,241 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include "base/whole_file.hpp"
+#include "sim/run/simulate.hpp"
+#include "sim/step/explicit_limit.hpp"
+#include "tool/study/accuracy/accuracy.hpp"
+
+namespace unravel::tool {
+
+namespace {
+
+// Particles farther out than this many diagonals say that a run has blown up, long before it overflows.
+constexpr double far_out = 100;
+// A run that explicit springs bring nearer to their limit of stability than this is no reference.
+constexpr double safe_share = 0.5;
+// So many times as many steps as the first reference takes an explicit one at most.
+constexpr int finer_explicit = 16;
+
+double median_of(std::vector<double> values) {
+    if (values.empty()) return 0;
+    std::sort(values.begin(), values.end());
+    const std::size_t half = values.size() / 2;
+    return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+bool in_sight(const std::vector<Vec3>& x, double limit) {
+    return std::all_of(x.begin(), x.end(), [&](const Vec3& p) { return p.squaredNorm() < limit * limit; });
+}
+
+// Frames until the two trajectories part.
+int comparable_frames(const Trajectory& a, const Trajectory& b, double diagonal, int least) {
+    int frames = 0;
+    for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+        if (static_cast<int>(k) >= least && distance({a[k]}, {b[k]}, diagonal) > parted) break;
+        frames = static_cast<int>(k) + 1;
+    }
+    return frames;
+}
+
+// What precedes the positions in a reference's file.
+struct ReferenceHeader {
+    char kind[8] = {'u', 'n', 'r', 'e', 'f', '0', '0', '3'};
+    std::int32_t steps_per_frame = 0, frames = 0;
+    std::int32_t second_is_explicit = 1, second_steps_per_frame = 0;
+    std::uint64_t particles = 0;
+    double floor = 0;
+};
+constexpr std::size_t largest_reference = std::size_t{4} << 30;
+
+AccuracySetting reference_setting(Integrator integrator, int steps_per_frame) {
+    AccuracySetting setting;
+    setting.integrator = integrator;
+    setting.steps_per_frame = steps_per_frame;
+    setting.tolerance = 1e-9;
+    return setting;
+}
+
+double seconds_a_step(const AccuracyRun& run) {
+    return run.point.median() / std::max<double>(1, static_cast<double>(run.point.steps));
+}
+
+// The scheme that shares least with the first, of those that bear the step. Explicit steps are of first order
+// where the first reference is of second, and cheap: as many as take the time that a step of the first does
+// [s].
+AccuracySetting second_reference(const Scene& scene, int steps_per_frame, double seconds,
+                                 const std::function<bool()>& keep_on) {
+    StepOptions options = step_options(scene.solver);
+    options.integrator = Integrator::explicit_;
+    Placement placement;
+    const ClothModel model = build_model(scene, placement);
+    int finer = 1;
+    while (finer <= finer_explicit &&
+           !(explicit_limit(model, options, 1.0 / (scene.clip.fps * steps_per_frame * finer)).share <
+             safe_share))
+        finer *= 2;
+    if (finer > finer_explicit) return reference_setting(Integrator::bdf2, steps_per_frame);
+    const double each = seconds_a_step(
+        run_setting(scene, reference_setting(Integrator::explicit_, finer * steps_per_frame), 1, keep_on));
+    while (finer < finer_explicit && 2 * finer * each < seconds) finer *= 2;
+    return reference_setting(Integrator::explicit_, finer * steps_per_frame);
+}
+
+}  // namespace
+
+double AccuracyPoint::median() const {
+    return median_of(seconds);
+}
+double AccuracyPoint::fastest() const {
+    return seconds.empty() ? 0 : *std::min_element(seconds.begin(), seconds.end());
+}
+double AccuracyPoint::quantile(double share) const {
+    if (seconds.empty()) return 0;
+    std::vector<double> sorted = seconds;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[static_cast<std::size_t>(std::lround(share * static_cast<double>(sorted.size() - 1)))];
+}
+double AccuracyPoint::slowest() const {
+    return seconds.empty() ? 0 : *std::max_element(seconds.begin(), seconds.end());
+}
+
+double diagonal_of(const Scene& scene) {
+    double diagonal = 0;
+    for (const Cloth& cloth : scene.cloths)
+        diagonal = std::max(diagonal, std::hypot(cloth.size[0], cloth.size[1]));
+    return diagonal;
+}
+
+double distance(const Trajectory& a, const Trajectory& b, double diagonal) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+        for (std::size_t p = 0; p < a[k].size(); ++p) sum += (a[k][p] - b[k][p]).squaredNorm();
+        count += a[k].size();
+    }
+    return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count)) / diagonal;
+}
+
+AccuracyRun run_setting(const Scene& scene, const AccuracySetting& setting, int frames,
+                        const std::function<bool()>& keep_on) {
+    Scene variant = scene;
+    variant.solver.integrator = setting.integrator;
+    // Explicit steps in one go, as fast as they can be: a step a frame, in parts.
+    const bool in_parts = setting.integrator == Integrator::explicit_;
+    const int steps = in_parts ? 1 : setting.steps_per_frame;
+    variant.solver.step = 1.0 / (scene.clip.fps * steps);
+    variant.solver.substeps = in_parts ? setting.steps_per_frame : 1;
+    variant.solver.threshold = setting.threshold;
+    variant.solver.tolerance = setting.tolerance;
+    variant.solver.activation = setting.activation;
+    variant.solver.activation_band = setting.band;
+    variant.solver.bend = setting.bend;
+    variant.solver.adaptive.reset();
+    Simulation simulation = start_simulation(variant);
+    const double limit = far_out * diagonal_of(scene);
+
+    AccuracyRun run;
+    run.point.setting = setting;
+    double seconds = 0;
+    try {
+        for (int frame = 0; frame < frames; ++frame) {
+            if (!keep_on()) {
+                run.stopped = true;
+                return run;
+            }
+            for (int k = 0; k < steps; ++k) {
+                // Strain and energy are looked at where a frame ends: more often they would cost more than
+                // a small step.
+                simulation.options.measure = k + 1 == steps;
+                const StepReport report = step(simulation.model, simulation.options, variant.solver.step,
+                                               simulation.state, simulation.ws);
+                seconds += report.times.step();
+                run.point.rvm += report.rvm;
+                run.point.steps += static_cast<std::uint64_t>(setting.steps_per_frame / steps);
+                if (!simulation.options.measure) continue;
+                run.point.max_strain = std::max(run.point.max_strain, report.max_strain);
+                run.point.lowest = report.lowest;
+                run.point.energy = report.kinetic + report.potential;
+            }
+            if (!in_sight(simulation.state.x, limit)) {
+                run.point.broke = true;
+                break;
+            }
+            run.trajectory.push_back(simulation.state.x);
+        }
+    } catch (const SimulationError&) {
+        run.point.broke = true;
+    }
+    run.point.seconds = {seconds};
+    return run;
+}
+
+AccuracyReference make_reference(const Scene& scene, double seconds, const std::function<bool()>& keep_on) {
+    AccuracyReference reference;
+    const int all = scene.clip.frames() - 1;
+    // An eighth of a second by moderate steps tells what a step costs.
+    const int probe_frames = std::max(1, scene.clip.fps / 8);
+    const AccuracyRun probe = run_setting(scene, reference_setting(Integrator::adaptive_imex2, 64),
+                                          std::min(all, probe_frames), keep_on);
+    const double per_step = seconds_a_step(probe);
+    const int wanted = std::min(all, std::max(1, scene.clip.fps / 2));
+    int steps = 256;
+    while (steps < finest_reference && 2 * (2.0 * steps) * wanted * per_step < seconds) steps *= 2;
+
+    reference.first = reference_setting(Integrator::adaptive_imex2, steps);
+    reference.second = second_reference(scene, steps, per_step, keep_on);
+    AccuracyRun first = run_setting(scene, reference.first, wanted, keep_on);
+    const AccuracyRun other = run_setting(scene, reference.second, wanted, keep_on);
+    const double diagonal = diagonal_of(scene);
+    const int least = static_cast<int>(std::ceil(least_window * scene.clip.fps));
+    reference.frames = comparable_frames(first.trajectory, other.trajectory, diagonal, least);
+    reference.trajectory = std::move(first.trajectory);
+    reference.trajectory.resize(static_cast<std::size_t>(reference.frames));
+    reference.floor = distance(reference.trajectory, other.trajectory, diagonal);
+    return reference;
+}
+
+std::string reference_bytes(const AccuracyReference& reference) {
+    ReferenceHeader header;
+    header.steps_per_frame = reference.first.steps_per_frame;
+    header.frames = reference.frames;
+    header.particles = reference.trajectory.empty() ? 0 : reference.trajectory.front().size();
+    header.second_is_explicit = reference.second.integrator == Integrator::explicit_;
+    header.second_steps_per_frame = reference.second.steps_per_frame;
+    header.floor = reference.floor;
+    std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
+    for (const std::vector<Vec3>& x : reference.trajectory)
+        bytes.append(reinterpret_cast<const char*>(x.data()), x.size() * sizeof(Vec3));
+    return bytes;
+}
+
+AccuracyReference read_reference(const std::filesystem::path& file, std::size_t particles) {
+    const std::string bytes = read_whole_text(file, largest_reference);
+    ReferenceHeader header;
+    const ReferenceHeader expected;
+    if (bytes.size() >= sizeof header) std::memcpy(&header, bytes.data(), sizeof header);
+    const std::size_t frame_bytes = particles * sizeof(Vec3);
+    if (bytes.size() < sizeof header || std::memcmp(header.kind, expected.kind, sizeof header.kind) != 0 ||
+        header.particles != particles || header.frames < 0 || header.steps_per_frame < 1 ||
+        header.second_steps_per_frame < 1 ||
+        bytes.size() != sizeof header + static_cast<std::size_t>(header.frames) * frame_bytes) {
+        throw InputError(file, "is no reference of this scene; --force makes a new one");
+    }
+    AccuracyReference reference;
+    reference.first = reference_setting(Integrator::adaptive_imex2, header.steps_per_frame);
+    reference.second =
+        reference_setting(header.second_is_explicit != 0 ? Integrator::explicit_ : Integrator::bdf2,
+                          header.second_steps_per_frame);
+    reference.frames = header.frames;
+    reference.floor = header.floor;
+    for (int k = 0; k < header.frames; ++k) {
+        reference.trajectory.emplace_back(particles);
+        std::memcpy(static_cast<void*>(reference.trajectory.back().data()),
+                    bytes.data() + sizeof header + static_cast<std::size_t>(k) * frame_bytes, frame_bytes);
+    }
+    return reference;
+}
+
+}  // namespace unravel::tool

@@ -1,9 +1,0 @@
-#include "tool/version.hpp"
-
-namespace unravel::tool {
-
-const char* version() {
-    return UNRAVEL_VERSION;
-}
-
-}  // namespace unravel::tool
