@@ -1,0 +1,74 @@
+#include "sim/surface/feature_pairs.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace unravel::sim {
+
+namespace {
+
+// Leaves searched by one task.
+constexpr std::size_t group_size = 16;
+
+// Pairs within one leaf, or between two.
+struct LeafPairs {
+    const Surface& surface;
+    const SurfaceTree& tree;
+    PairList& vertex_triangle;
+    PairList& edge_edge;
+
+    void try_vertices(std::uint32_t vertices_of, std::uint32_t triangles_of) {
+        for (const std::uint32_t p : tree.vertices.of(vertices_of)) {
+            const Box& box = tree.vertex_box[p];
+            for (const std::uint32_t t : tree.triangles.of(triangles_of)) {
+                if (!box.overlaps(tree.triangle_box[t])) continue;
+                const auto& [a, b, c] = surface.triangles[t];
+                if (p != a && p != b && p != c) vertex_triangle.push_back({p, t});
+            }
+        }
+    }
+    void try_edges(std::uint32_t one, std::uint32_t other) {
+        for (const std::uint32_t e : tree.edges.of(one)) {
+            const Box& box = tree.edge_box[e];
+            const auto& [a, b] = surface.edges[e];
+            for (const std::uint32_t g : tree.edges.of(other)) {
+                if ((one == other && g <= e) || !box.overlaps(tree.edge_box[g])) continue;
+                const auto& [c, d] = surface.edges[g];
+                if (a != c && a != d && b != c && b != d)
+                    edge_edge.push_back({std::min(e, g), std::max(e, g)});
+            }
+        }
+    }
+    void operator()(std::uint32_t one, std::uint32_t other) {
+        try_vertices(one, other);
+        if (one != other) try_vertices(other, one);
+        try_edges(one, other);
+    }
+};
+
+void join(const std::vector<PairList>& parts, PairList& out) {
+    out.clear();
+    for (const PairList& part : parts) out.insert(out.end(), part.begin(), part.end());
+}
+
+}  // namespace
+
+void find_pairs(const Surface& surface, const SurfaceTree& tree, FeaturePairs& out) {
+    const std::size_t leaves = tree.leaves(), groups = (leaves + group_size - 1) / group_size;
+    out.found_vt.resize(groups);
+    out.found_ee.resize(groups);
+    tbb::parallel_for(std::size_t{0}, groups, [&](std::size_t group) {
+        out.found_vt[group].clear();
+        out.found_ee[group].clear();
+        LeafPairs pairs{surface, tree, out.found_vt[group], out.found_ee[group]};
+        for (std::size_t k = group * group_size; k < std::min(leaves, (group + 1) * group_size); ++k) {
+            const auto leaf = static_cast<std::uint32_t>(k);
+            tree.each_partner(leaf, [&](std::uint32_t other) { pairs(leaf, other); });
+        }
+    });
+    join(out.found_vt, out.vertex_triangle);
+    join(out.found_ee, out.edge_edge);
+}
+
+}  // namespace unravel::sim
