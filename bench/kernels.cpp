@@ -40,7 +40,8 @@ void components(benchmark::State& state) {
     std::vector<std::uint32_t> parent;
     Components out;
     for (auto _ : state)
-        find_components(problem.simulation().model.size(), families, ws.constraints, parent, out);
+        find_components(problem.simulation().model.size(), {families, ws.stencils}, ws.constraints, parent,
+                        out);
     per_particle(state, static_cast<double>(problem.simulation().model.size()));
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/linear/conjugate_gradients.hpp"
+
 namespace unravel::sim {
 
 namespace {
@@ -12,12 +14,16 @@ constexpr double aim = 0.95;
 // A restart that gains less than this factor on ‖r‖² has met the end of single precision.
 constexpr double least_gain = 0.5;
 
+// CG's problem on a grid: two fused sweeps per iteration.
 struct GridCg {
     GridSystem& system;
     GridCgWorkspace& ws;
     const StencilGrid& g;
     const StencilKernels& kernels = stencil_kernels();
     RowBands bands;
+    bool multigrid = false;  // or blocks, which are applied as the residual is measured
+    double measured = 0;
+    int side = 0;  // of the two directions, the current one
 
     GridCg(GridSystem& s, GridCgWorkspace& w) : system(s), ws(w), g(s.grid), bands(s.grid) {
         // What lies outside the grid stays zero from one solve to the next.
@@ -87,6 +93,35 @@ struct GridCg {
         });
     }
 
+    // Begins a series of iterations; ‖r‖², of which `residual` is the true one.
+    double begin(double residual) {
+        // A sweep that advances by nothing makes z = P r.
+        return multigrid ? residual : measure(0);
+    }
+    double precondition() {
+        if (!multigrid) return measured;
+        ws.multigrid.apply(ws.r.data(), ws.z.data());
+        return product();
+    }
+    double multiply(double beta) {
+        const float *const z = ws.z.data(), *const p = ws.p[static_cast<std::size_t>(side)].data();
+        side ^= 1;
+        float* const p_next = ws.p[static_cast<std::size_t>(side)].data();
+        return sweep([&](int begin, int end) {
+            kernels.sweep.direction(g, begin, end, static_cast<float>(beta), z, p, p_next, ws.q.data(),
+                                    ws.dots.data(), scratch<float>());
+        });
+    }
+    double measure(double alpha) {
+        measured = sweep([&](int begin, int end) {
+            kernels.sweep.advance(g, begin, end, static_cast<float>(alpha),
+                                  ws.p[static_cast<std::size_t>(side)].data(), ws.q.data(), ws.d.data(),
+                                  ws.r.data(), system.P.data(), multigrid ? nullptr : ws.z.data(),
+                                  ws.dots.data());
+        });
+        return measured;
+    }
+
     // r·z
     double product() {
         return sweep([&](int begin, int end) {
@@ -123,45 +158,19 @@ struct GridCg {
 bool solve_on_grid(GridSystem& system, bool multigrid, std::uint32_t patience, const SolveOptions& options,
                    GridCgWorkspace& ws, ComponentSolve& out) {
     GridCg cg(system, ws);
-    const StencilGrid& g = cg.g;
     out = {};
     const double target = options.tolerance * options.tolerance * cg.right_side();
     double residual = cg.true_residual();
     out.rvm = system.rows;
     const auto limit = static_cast<std::uint32_t>(options.max_iterations);
+    cg.multigrid = multigrid;
     if (multigrid && residual > target) ws.multigrid.build(system);
     std::uint32_t until = std::min(limit, patience);
-    int side = 0;  // of the two directions, the current one
 
     while (residual > target && out.iterations < limit) {
-        double rho = 0, recursive = residual;
-        float beta = 0;
-        // The first sweep of all makes z = P r, for which it advances by nothing.
-        const auto advance = [&](float alpha) {
-            return cg.sweep([&](int begin, int end) {
-                cg.kernels.sweep.advance(g, begin, end, alpha, ws.p[static_cast<std::size_t>(side)].data(),
-                                         ws.q.data(), ws.d.data(), ws.r.data(), system.P.data(),
-                                         multigrid ? nullptr : ws.z.data(), ws.dots.data());
-            });
-        };
-        if (!multigrid) recursive = advance(0);
-        while (recursive > aim * target && out.iterations < until) {
-            if (multigrid) ws.multigrid.apply(ws.r.data(), ws.z.data());
-            const double rho_next = multigrid ? cg.product() : recursive;
-            beta = rho > 0 ? static_cast<float>(rho_next / rho) : 0.0f;
-            rho = rho_next;
-            const float *const z = ws.z.data(), *const p = ws.p[static_cast<std::size_t>(side)].data();
-            side ^= 1;
-            float* const p_next = ws.p[static_cast<std::size_t>(side)].data();
-            const double curvature = cg.sweep([&](int begin, int end) {
-                cg.kernels.sweep.direction(g, begin, end, beta, z, p, p_next, ws.q.data(), ws.dots.data(),
-                                           cg.scratch<float>());
-            });
-            ++out.iterations;
-            out.rvm += system.rows;
-            if (!(curvature > 0)) break;
-            recursive = advance(static_cast<float>(rho / curvature));
-        }
+        const std::uint32_t first = out.iterations;
+        conjugate_gradients(cg, cg.begin(residual), aim * target, until, out.iterations);
+        out.rvm += static_cast<std::uint64_t>(out.iterations - first) * system.rows;
         cg.take_correction();
         const double before = residual;
         residual = cg.true_residual();
@@ -169,10 +178,10 @@ bool solve_on_grid(GridSystem& system, bool multigrid, std::uint32_t patience, c
         if (residual <= target) break;
         if (!std::isfinite(residual)) return false;
         const bool stalled = !(residual < least_gain * before);
-        if (until < limit && (out.iterations >= until || (stalled && multigrid))) {
+        if (until < limit && (out.iterations >= until || (stalled && cg.multigrid))) {
             until = limit;
-            multigrid = !multigrid;
-            if (multigrid) ws.multigrid.build(system);
+            cg.multigrid = !cg.multigrid;
+            if (cg.multigrid) ws.multigrid.build(system);
         } else if (stalled) {
             return false;
         }

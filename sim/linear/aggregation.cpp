@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
-#include <type_traits>
 
 namespace unravel::sim {
 
@@ -29,6 +28,15 @@ Mat3 matrix_of(const Block3& B) {
     M.col(1) = B.y.head<3>().matrix().cast<double>();
     M.col(2) = B.z.head<3>().matrix().cast<double>();
     return M;
+}
+
+// Not below B nor −B, for B of any sign: diagonally dominant with either.
+Block3 bound_of(const Block3& B) {
+    Block3 bound;
+    bound.x[0] = B.x.head<3>().abs().sum();
+    bound.y[1] = B.y.head<3>().abs().sum();
+    bound.z[2] = B.z.head<3>().abs().sum();
+    return bound;
 }
 
 // Positive definite, by its leading minors.
@@ -72,7 +80,10 @@ void factorise(Level& level, const Filter& filter) {
                 Block3 T, D = level.D[i];
                 for (std::uint32_t e = row.begin; e < row.upper; ++e)
                     T += level.coupling[e].around(level.inverse[level.column[e]]);
-                for (std::uint32_t e = row.apart; e < row.end; ++e) D += level.coupling[e].block();
+                for (std::uint32_t e = row.apart; e < row.end; ++e) {
+                    const Block3 B = level.coupling[e].block();
+                    D += level.any_sign ? bound_of(B) : B;
+                }
                 level.inverse[i] = inverse_of(row.begin == row.upper ? D : pivot_of(D, T), filter(i));
             }
         });
@@ -84,6 +95,7 @@ template <typename Level, typename Absent>
 void coarsen(const Level& fine, AggregationLevel<Block3>& coarse, std::uint32_t n, const Absent& absent) {
     // An aggregate has at most as many couplings as its members have, so that all can be summed at once.
     coarse.resize(n, fine.column.size());
+    coarse.any_sign = fine.any_sign;
     std::uint32_t place = 0;
     for (std::uint32_t I = 0; I < n; ++I) {
         coarse.rows[I].begin = place;
@@ -92,8 +104,7 @@ void coarsen(const Level& fine, AggregationLevel<Block3>& coarse, std::uint32_t 
     }
     coarse.pieces.all([&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t I = begin; I < end; ++I) {
-            auto& row = coarse.rows[I];
-            std::uint32_t last = row.begin;
+            RowOfBlocks row(coarse, I);
             Block3 own;
             for (std::uint32_t k = fine.first_member[I]; k < fine.first_member[I + 1]; ++k) {
                 const std::uint32_t i = fine.member[k];
@@ -101,35 +112,14 @@ void coarsen(const Level& fine, AggregationLevel<Block3>& coarse, std::uint32_t 
                 own += fine.own[i];
                 for (std::uint32_t e = fine.rows[i].begin; e < fine.rows[i].end; ++e) {
                     const std::uint32_t j = fine.column[e], J = fine.parent[j];
-                    if (absent(j) || J == I) continue;
-                    std::uint32_t at = row.begin;
-                    while (at < last && coarse.column[at] != J) ++at;
-                    if (at == last) {
-                        coarse.column[last] = J;
-                        coarse.coupling[last++] = {};
-                    }
-                    coarse.coupling[at] += fine.coupling[e].block();
+                    if (!absent(j) && J != I) row.add(J, fine.coupling[e].block());
                 }
             }
             Block3 D = own;
-            for (std::uint32_t e = row.begin; e < last; ++e) D += coarse.coupling[e];
+            for (std::uint32_t e = coarse.rows[I].begin; e < row.end(); ++e) D += coarse.coupling[e];
+            row.order();
             coarse.own[I] = own;
             coarse.D[I] = D;
-            // Lower ones to the front, then upper ones.
-            const auto bring = [&](std::uint32_t from, Pieces::Relation relation) {
-                for (std::uint32_t e = from; e < last; ++e) {
-                    if (coarse.pieces.relation(I, coarse.column[e]) != relation) continue;
-                    if (e != from) {
-                        std::swap(coarse.column[from], coarse.column[e]);
-                        std::swap(coarse.coupling[from], coarse.coupling[e]);
-                    }
-                    ++from;
-                }
-                return from;
-            };
-            row.upper = bring(row.begin, Pieces::lower);
-            row.apart = bring(row.upper, Pieces::upper);
-            row.end = last;
         }
     });
 }
@@ -166,23 +156,26 @@ Float4 Aggregation::filtered(std::uint32_t i, const Float4& y) const {
     return f == absent_row ? Float4::Zero().eval() : filters_[static_cast<std::size_t>(f)].times(y);
 }
 
+template <typename Finest>
 void Aggregation::place(const System& A, const Components& components, std::size_t c,
-                        const Aggregates& aggregates) {
+                        const Aggregates& aggregates, Finest& finest) {
     begin_ = components.start[c];
     const std::uint32_t n = components.size(c);
     const auto first = components.order.begin() + begin_;
-    if (particles_.size() == n && std::equal(particles_.begin(), particles_.end(), first)) return;
+    const bool same = particles_.size() == n && std::equal(particles_.begin(), particles_.end(), first);
+    if (same && finest.node.size() == n) return;
     particles_.assign(first, first + n);
     row_.clear();
     at_.resize(n);
-    fine_.node.clear();
+    springs_.node.clear();
+    general_.node.clear();
     for (std::uint32_t k = 0; k < aggregates.order.size(); ++k) {
         const std::uint32_t p = aggregates.order[k];
         if (components.label[p] != static_cast<std::int32_t>(c)) continue;
         const std::uint32_t row = A.row_of[p] - begin_;
         at_[row] = static_cast<std::uint32_t>(row_.size());
         row_.push_back(row);
-        fine_.node.push_back(k);
+        finest.node.push_back(k);
     }
     depth_ = 0;
     std::size_t rows = n;
@@ -194,7 +187,7 @@ void Aggregation::place(const System& A, const Components& components, std::size
                                       : *std::max_element(parent.begin(), parent.end()) + 1;
         std::vector<std::uint32_t>& next = coarse_[depth_].node;
         if (level == 0) {
-            gather(parent, nodes, found_, fine_, next);
+            gather(parent, nodes, found_, finest, next);
         } else {
             gather(parent, nodes, found_, coarse_[depth_ - 1], next);
         }
@@ -203,61 +196,90 @@ void Aggregation::place(const System& A, const Components& components, std::size
     }
 }
 
-void Aggregation::load(const System& A, std::span<const Constraint* const> constraint) {
+void Aggregation::load_row(const System& A, std::uint32_t r, std::uint32_t i, Fine& level) const {
+    auto& row = level.rows[i];
+    std::array<std::uint32_t, 3> place_of{};  // by relation: how many, then where the next one goes
+    const auto each = [&](const auto& f) {
+        for (std::uint32_t e = A.start[r]; e < A.start[r + 1]; ++e)
+            f(A.entries[e], at_[A.entries[e].column - begin_]);
+    };
+    each([&](const System::Entry&, std::uint32_t j) { ++place_of[level.pieces.relation(i, j)]; });
+    row.upper = row.begin + place_of[Pieces::lower];
+    row.apart = row.upper + place_of[Pieces::upper];
+    row.end = row.apart + place_of[Pieces::apart];
+    place_of = {row.begin, row.upper, row.apart};
+    each([&](const System::Entry& entry, std::uint32_t j) {
+        const std::uint32_t place = place_of[level.pieces.relation(i, j)]++;
+        level.column[place] = j;
+        level.coupling[place] = {{static_cast<float>(entry.w.x()), static_cast<float>(entry.w.y()),
+                                  static_cast<float>(entry.w.z()), static_cast<float>(entry.a)}};
+    });
+}
+
+void Aggregation::load_row(const System& A, std::uint32_t r, std::uint32_t i, Coarse& level) const {
+    RowOfBlocks row(level, i);
+    for (std::uint32_t e = A.start[r]; e < A.start[r + 1]; ++e) {
+        const System::Entry& entry = A.entries[e];
+        row.add(at_[entry.column - begin_],
+                block_of(entry.a * Mat3::Identity() + entry.w * entry.w.transpose()));
+    }
+    for (const System::Block& block : A.blocks_of(r))
+        row.add(at_[block.column - begin_], block_of(-block.K.matrix()));
+    row.order();
+}
+
+template <typename Level>
+void Aggregation::load(const System& A, std::span<const Constraint* const> constraint, Level& level) {
     const auto n = static_cast<std::uint32_t>(row_.size());
-    fine_.resize(n, A.start[begin_ + n] - A.start[begin_]);
+    const auto couplings = [&](std::uint32_t row) {
+        return A.start[row + 1] - A.start[row] + static_cast<std::uint32_t>(A.blocks_of(row).size());
+    };
+    std::uint32_t place = 0;
+    for (std::uint32_t row = begin_; row < begin_ + n; ++row) place += couplings(row);
+    level.resize(n, place);
+    level.any_sign = of_stencils_;
     filter_.resize(n);
     filters_.clear();
-    std::uint32_t place = 0;
+    place = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
         const std::uint32_t row = begin_ + row_[i];
-        fine_.rows[i].begin = place;
-        place += A.start[row + 1] - A.start[row];
+        level.rows[i].begin = place;
+        place += couplings(row);
         const Constraint* const held = constraint[row];
         filter_[i] = !held             ? free_row
                      : held->free == 0 ? absent_row
                                        : static_cast<std::int32_t>(filters_.size());
         if (held && held->free > 0) filters_.push_back(block_of(held->S));
     }
-    fine_.pieces.all([&](std::uint32_t begin, std::uint32_t end) {
+    const auto is_absent = [&](std::uint32_t column) { return filter_[at_[column - begin_]] == absent_row; };
+    level.pieces.all([&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
             const std::uint32_t r = begin_ + row_[i];
-            auto& row = fine_.rows[i];
             Mat3 own = A.diagonal[r];
-            std::array<std::uint32_t, 3> place_of{};  // by relation: how many, then where the next one goes
             for (std::uint32_t e = A.start[r]; e < A.start[r + 1]; ++e) {
                 const System::Entry& entry = A.entries[e];
-                const std::uint32_t j = at_[entry.column - begin_];
-                ++place_of[fine_.pieces.relation(i, j)];
-                if (filter_[j] == absent_row) continue;
+                if (is_absent(entry.column)) continue;
                 own.noalias() -= entry.w * entry.w.transpose();
                 own.diagonal().array() -= entry.a;
             }
-            row.upper = row.begin + place_of[Pieces::lower];
-            row.apart = row.upper + place_of[Pieces::upper];
-            row.end = row.apart + place_of[Pieces::apart];
-            place_of = {row.begin, row.upper, row.apart};
-            for (std::uint32_t e = A.start[r]; e < A.start[r + 1]; ++e) {
-                const System::Entry& entry = A.entries[e];
-                const std::uint32_t j = at_[entry.column - begin_];
-                const std::uint32_t at = place_of[fine_.pieces.relation(i, j)]++;
-                fine_.column[at] = j;
-                fine_.coupling[at] = {{static_cast<float>(entry.w.x()), static_cast<float>(entry.w.y()),
-                                       static_cast<float>(entry.w.z()), static_cast<float>(entry.a)}};
+            for (const System::Block& block : A.blocks_of(r)) {
+                if (!is_absent(block.column)) own += block.K.matrix();
             }
+            load_row(A, r, i, level);
             if (filter_[i] >= 0) own += 2 * A.diagonal[r].trace() * (Mat3::Identity() - constraint[r]->S);
-            fine_.own[i] = block_of(own);
-            fine_.D[i] = block_of(A.diagonal[r]);
+            level.own[i] = block_of(own);
+            level.D[i] = block_of(A.diagonal[r]);
         }
     });
 }
 
-void Aggregation::build(const System& A, const Components& components, std::size_t c,
-                        const Aggregates& aggregates, std::span<const Constraint* const> constraint) {
-    place(A, components, c, aggregates);
-    load(A, constraint);
+template <typename Finest>
+void Aggregation::build_on(Finest& finest, const System& A, const Components& components, std::size_t c,
+                           const Aggregates& aggregates, std::span<const Constraint* const> constraint) {
+    place(A, components, c, aggregates, finest);
+    load(A, constraint, finest);
     static const Block3 nothing;
-    factorise(fine_, [&](std::uint32_t i) -> const Block3* {
+    factorise(finest, [&](std::uint32_t i) -> const Block3* {
         const std::int32_t f = filter_[i];
         if (f == free_row) return nullptr;
         return f == absent_row ? &nothing : &filters_[static_cast<std::size_t>(f)];
@@ -267,7 +289,7 @@ void Aggregation::build(const System& A, const Components& components, std::size
         Coarse& coarse = coarse_[k];
         const auto rows = static_cast<std::uint32_t>(coarse.node.size());
         if (k == 0) {
-            coarsen(fine_, coarse, rows, [&](std::uint32_t i) { return filter_[i] == absent_row; });
+            coarsen(finest, coarse, rows, [&](std::uint32_t i) { return filter_[i] == absent_row; });
         } else {
             coarsen(coarse_[k - 1], coarse, rows, [](std::uint32_t) { return false; });
         }
@@ -275,18 +297,24 @@ void Aggregation::build(const System& A, const Components& components, std::size
     }
 }
 
+void Aggregation::build(const System& A, const Components& components, std::size_t c,
+                        const Aggregates& aggregates, std::span<const Constraint* const> constraint) {
+    of_stencils_ = A.has_blocks(components.start[c], components.start[c + 1]);
+    if (of_stencils_) {
+        build_on(general_, A, components, c, aggregates, constraint);
+    } else {
+        build_on(springs_, A, components, c, aggregates, constraint);
+    }
+}
+
 template <typename Level>
 void Aggregation::cycle(Level& level, std::size_t depth) {
-    constexpr bool finest = std::is_same_v<Level, Fine>;
     level.relax();
     if (depth == depth_) {
         for (int k = 0; k < coarsest_aggregate_sweeps; ++k) level.correct();
         return;
     }
-    const auto filter = [&](std::uint32_t i, const Float4& y) {
-        if constexpr (finest) return filtered(i, y);
-        return y;
-    };
+    const auto filter = [&](std::uint32_t i, const Float4& y) { return depth == 0 ? filtered(i, y) : y; };
     Coarse& coarse = coarse_[depth];
     coarse.pieces.all([&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t I = begin; I < end; ++I) {
@@ -304,19 +332,28 @@ void Aggregation::cycle(Level& level, std::size_t depth) {
     level.correct();
 }
 
-void Aggregation::apply(std::span<const Vec3> r, std::span<Vec3> z) {
-    fine_.pieces.all([&](std::uint32_t begin, std::uint32_t end) {
+template <typename Finest>
+void Aggregation::apply_on(Finest& finest, std::span<const Vec3> r, std::span<Vec3> z) {
+    finest.pieces.all([&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
             const Vec3& y = r[begin_ + row_[i]];
-            fine_.r[i] = {static_cast<float>(y.x()), static_cast<float>(y.y()), static_cast<float>(y.z()),
-                          0.0f};
+            finest.r[i] = {static_cast<float>(y.x()), static_cast<float>(y.y()), static_cast<float>(y.z()),
+                           0.0f};
         }
     });
-    cycle(fine_, 0);
-    fine_.pieces.all([&](std::uint32_t begin, std::uint32_t end) {
+    cycle(finest, 0);
+    finest.pieces.all([&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i)
-            z[begin_ + row_[i]] = fine_.z[i].head<3>().matrix().cast<double>();
+            z[begin_ + row_[i]] = finest.z[i].template head<3>().matrix().template cast<double>();
     });
+}
+
+void Aggregation::apply(std::span<const Vec3> r, std::span<Vec3> z) {
+    if (of_stencils_) {
+        apply_on(general_, r, z);
+    } else {
+        apply_on(springs_, r, z);
+    }
 }
 
 }  // namespace unravel::sim

@@ -20,6 +20,10 @@ namespace unravel::sim {
 /// P is one translation per aggregate, and coarse matrices are Pᵀ A P, summed anew from the springs that act
 /// in this step: springs between two aggregates are one coupling, springs within one are gone.
 ///
+/// Where stencils couple the component too, a coupling is a general block, on the finest level as well, and
+/// need not be positive. The bound below holds for any L; what M leaves out is then added to D as a diagonal
+/// that is not below it.
+///
 /// M = (E + L) E⁻¹ (E + Lᵀ) is the incomplete factorisation without fill that changes the diagonal alone
 /// (Meijerink & van der Vorst 1977): E_i = D_i − θ_i T_i, T_i = Σ L_ij E_j⁻¹ L_ijᵀ over the j before i. With
 /// θ = 1 it solves lines of springs exactly, across whatever mesh they run; cloth, far stiffer along threads
@@ -44,11 +48,21 @@ public:
 private:
     using Fine = AggregationLevel<RankOneBlock>;
     using Coarse = AggregationLevel<Block3>;
-    void place(const System& A, const Components& components, std::size_t c, const Aggregates& aggregates);
-    void load(const System& A, std::span<const Constraint* const> constraint);
+    template <typename Finest>
+    void place(const System& A, const Components& components, std::size_t c, const Aggregates& aggregates,
+               Finest& finest);
+    void load_row(const System& A, std::uint32_t r, std::uint32_t i, Fine& level) const;
+    void load_row(const System& A, std::uint32_t r, std::uint32_t i, Coarse& level) const;
+    template <typename Finest>
+    void load(const System& A, std::span<const Constraint* const> constraint, Finest& finest);
+    template <typename Finest>
+    void build_on(Finest& finest, const System& A, const Components& components, std::size_t c,
+                  const Aggregates& aggregates, std::span<const Constraint* const> constraint);
     Float4 filtered(std::uint32_t i, const Float4& y) const;
     template <typename Level>
     void cycle(Level& level, std::size_t depth);
+    template <typename Finest>
+    void apply_on(Finest& finest, std::span<const Vec3> r, std::span<Vec3> z);
 
     std::uint32_t begin_ = 0;
     std::vector<std::uint32_t> particles_;  ///< of the component that the places below are for
@@ -58,7 +72,9 @@ private:
     /// (fine rows) free, absent, or which of filters_ holds S
     std::vector<std::int32_t> filter_;
     std::vector<Block3> filters_;
-    Fine fine_;
+    Fine springs_;    ///< the finest level, of springs alone
+    Coarse general_;  ///< or of general blocks
+    bool of_stencils_ = false;
     std::vector<Coarse> coarse_;
     std::size_t depth_ = 0;  ///< levels of coarse_ in use
 };

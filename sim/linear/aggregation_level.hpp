@@ -109,6 +109,7 @@ struct AggregationLevel {
         std::uint32_t begin, upper, apart, end;
     };
     Pieces pieces;
+    bool any_sign = false;  ///< couplings need not be positive semidefinite
     std::vector<Row> rows;
     std::vector<std::uint32_t> column;
     std::vector<Coupling> coupling;
@@ -187,6 +188,48 @@ struct AggregationLevel {
             });
         }
     }
+};
+
+/// Couplings of one row as they are found, from its `begin` on, where there must be room: those to the same
+/// column become one.
+class RowOfBlocks {
+public:
+    RowOfBlocks(AggregationLevel<Block3>& level, std::uint32_t i)
+        : level_(level), i_(i), last_(level.rows[i].begin) {}
+
+    void add(std::uint32_t column, const Block3& B) {
+        std::uint32_t at = level_.rows[i_].begin;
+        while (at < last_ && level_.column[at] != column) ++at;
+        if (at == last_) {
+            level_.column[last_] = column;
+            level_.coupling[last_++] = {};
+        }
+        level_.coupling[at] += B;
+    }
+    std::uint32_t end() const { return last_; }
+    /// Brings lower ones to the front, then upper ones.
+    void order() {
+        auto& row = level_.rows[i_];
+        row.upper = bring(row.begin, Pieces::lower);
+        row.apart = bring(row.upper, Pieces::upper);
+        row.end = last_;
+    }
+
+private:
+    std::uint32_t bring(std::uint32_t from, Pieces::Relation relation) {
+        for (std::uint32_t e = from; e < last_; ++e) {
+            if (level_.pieces.relation(i_, level_.column[e]) != relation) continue;
+            if (e != from) {
+                std::swap(level_.column[from], level_.column[e]);
+                std::swap(level_.coupling[from], level_.coupling[e]);
+            }
+            ++from;
+        }
+        return from;
+    }
+
+    AggregationLevel<Block3>& level_;
+    std::uint32_t i_, last_;
 };
 
 }  // namespace unravel::sim

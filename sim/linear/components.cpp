@@ -8,6 +8,8 @@ namespace unravel::sim {
 
 namespace {
 
+constexpr std::uint32_t no_particle = 0xffffffffu;
+
 // Root of p, halving the path on the way. A root is always its set's smallest particle.
 std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t p) {
     while (parent[p] != p) {
@@ -25,8 +27,22 @@ std::uint32_t Components::largest() const {
     return most;
 }
 
-void find_components(std::size_t particles, std::span<const SpringFamily> families,
-                     const Constraints& constraints, std::vector<std::uint32_t>& parent, Components& out) {
+bool any_implicit(const Couplings& couplings) {
+    const auto in_family = [](const SpringFamily& family) {
+        const std::vector<SpringState>& state = family.forces->state;
+        return std::find(state.begin(), state.end(), SpringState::implicit) != state.end();
+    };
+    const auto in_list = [](const Stencils& stencils) {
+        bool any = false;
+        for (std::size_t s = 0; s < stencils.list.size() && !any; ++s) any = stencils.is_implicit(s);
+        return any;
+    };
+    return std::any_of(couplings.springs.begin(), couplings.springs.end(), in_family) ||
+           std::any_of(couplings.stencils.begin(), couplings.stencils.end(), in_list);
+}
+
+void find_components(std::size_t particles, const Couplings& couplings, const Constraints& constraints,
+                     std::vector<std::uint32_t>& parent, Components& out) {
     // label marks the fully constrained first: the search must not walk through them.
     out.label.assign(particles, 0);
     for (const Constraint& c : constraints.all()) {
@@ -34,14 +50,32 @@ void find_components(std::size_t particles, std::span<const SpringFamily> famili
     }
     parent.resize(particles);
     std::iota(parent.begin(), parent.end(), 0u);
-    for (const SpringFamily& family : families) {
+    const auto join = [&](std::uint32_t i, std::uint32_t j) {
+        const std::uint32_t a = root_of(parent, i), b = root_of(parent, j);
+        parent[std::max(a, b)] = std::min(a, b);
+    };
+    for (const SpringFamily& family : couplings.springs) {
         const std::vector<SpringState>& state = family.forces->state;
         for (std::size_t s = 0; s < state.size(); ++s) {
             if (state[s] != SpringState::implicit) continue;
             const std::uint32_t i = family.springs->i[s], j = family.springs->j[s];
-            if (out.label[i] < 0 || out.label[j] < 0) continue;
-            const std::uint32_t a = root_of(parent, i), b = root_of(parent, j);
-            parent[std::max(a, b)] = std::min(a, b);
+            if (out.label[i] >= 0 && out.label[j] >= 0) join(i, j);
+        }
+    }
+    for (const Stencils& stencils : couplings.stencils) {
+        for (std::size_t s = 0; s < stencils.list.size(); ++s) {
+            if (!stencils.is_implicit(s)) continue;
+            const Stencil& stencil = stencils.list[s];
+            std::uint32_t first = no_particle;
+            for (std::uint32_t k = 0; k < stencil.count; ++k) {
+                const std::uint32_t p = stencil.p[k];
+                if (stencil.w[k] == 0 || out.label[p] < 0) continue;
+                if (first == no_particle) {
+                    first = p;
+                } else {
+                    join(first, p);
+                }
+            }
         }
     }
     // A root precedes its members, so one pass in particle order numbers components by their smallest

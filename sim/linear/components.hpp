@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "sim/constraints/constraints.hpp"
-#include "sim/forces/extension.hpp"
+#include "sim/forces/stencil.hpp"
 #include "sim/scene/math.hpp"
 
 namespace unravel::sim {
 
 /// The independent parts of one step's system (paper Sec. 5): connected components of the graph whose
-/// vertices are particles and whose edges are active springs handled implicitly. Fully constrained particles
-/// belong to none and stop the search. Ids follow each component's smallest particle, so they depend on
-/// nothing but the graph.
+/// vertices are particles and whose edges are active springs handled implicitly, and implicit stencils, each
+/// of which joins all of its particles. Fully constrained particles belong to none and stop the search. Ids
+/// follow each component's smallest particle, so they depend on nothing but the graph.
 struct Components {
     std::vector<std::int32_t> label;  ///< (particles) component, −1: fully constrained
     std::vector<std::uint32_t>
@@ -24,14 +24,18 @@ struct Components {
     std::uint32_t largest() const;
 };
 
-/// Finds them by union–find over the springs, O(n). `parent` is scratch that keeps its memory between calls.
-void find_components(std::size_t particles, std::span<const SpringFamily> families,
-                     const Constraints& constraints, std::vector<std::uint32_t>& parent, Components& out);
+/// Finds them by union–find over springs and stencils, O(n). `parent` is scratch that keeps its memory
+/// between calls.
+void find_components(std::size_t particles, const Couplings& couplings, const Constraints& constraints,
+                     std::vector<std::uint32_t>& parent, Components& out);
+
+/// Whether anything is implicit; without, every free particle is alone.
+bool any_implicit(const Couplings& couplings);
 
 /// The undecomposed system: every particle, constrained or not, in one component.
 void whole_cloth(std::size_t particles, Components& out);
 
-/// What find_components() gives where no spring is implicit: every free particle by itself.
+/// What find_components() gives where nothing is implicit: every free particle by itself.
 void lone_particles(std::size_t particles, const Constraints& constraints, Components& out);
 
 }  // namespace unravel::sim

@@ -5,91 +5,36 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "sim/linear/aggregation.hpp"
+#include "sim/linear/conjugate_gradients.hpp"
+#include "sim/linear/methods.hpp"
 
 namespace unravel::sim {
 
 namespace {
 
-bool is_swept(Preconditioner kind) {
-    return kind == Preconditioner::ssor || kind == Preconditioner::ic0;
-}
-
-// What stands in for preconditioners that need a grid, or many rows.
-Preconditioner on_rows(Preconditioner kind) {
-    const bool more = kind == Preconditioner::automatic || kind == Preconditioner::stencil_block ||
-                      kind == Preconditioner::multigrid || kind == Preconditioner::aggregation;
-    return more ? Preconditioner::constrained_block : kind;
-}
-
-// What solving a component by aggregation costs, set-up included, in iterations with the constrained block:
-// from here on `automatic` begins with cycles.
-constexpr std::uint32_t iterations_worth_cycles = 60;
-// Iterations after which the constrained block gives way to cycles that nobody expected to pay, and cycles
-// after which they give way.
-constexpr std::uint32_t most_iterations = 150, most_aggregation_cycles = 60;
+// Iterations after which the constrained block gives way to cycles that nobody expected to pay.
+constexpr std::uint32_t most_iterations = 150;
 constexpr std::uint32_t ever = std::numeric_limits<std::uint32_t>::max();
 
-// The rows of one component and the vectors over them.
-struct Rows {
-    const System& A;
-    const Components& components;
-    SolveWorkspace& ws;
-    std::size_t component;
-    std::uint32_t begin, end;
-    double* partials;        // one per chunk of these rows, nobody else's
-    bool chooses;            // cycles where they pay, rather than always
-    bool separate_stopping;  // the preconditioner is not the one that the stopping rule measures with
+// Without the cycles by aggregation, which are for large components.
+const PreconditionerMethod& method_on_rows(Preconditioner kind) {
+    return method_of(kind == Preconditioner::aggregation ? Preconditioner::constrained_block : kind);
+}
 
-    std::uint32_t count() const { return end - begin; }
-
-    // Sum over rows of f(row), in chunk order.
-    template <typename F>
-    double sum(const F& f) const {
-        const auto over = [&](std::uint32_t first, std::uint32_t last) {
-            double partial = 0;
-            for (std::uint32_t row = first; row < last; ++row) partial += f(row);
-            return partial;
-        };
-        if (count() <= chunk_size) return over(begin, end);
-        parallel_chunks(count(), [&](std::size_t chunk, std::size_t first, std::size_t last) {
-            partials[chunk] =
-                over(begin + static_cast<std::uint32_t>(first), begin + static_cast<std::uint32_t>(last));
-        });
-        double total = 0;
-        for (std::size_t chunk = 0; chunk < chunk_count(count()); ++chunk) total += partials[chunk];
-        return total;
-    }
-
-    template <typename F>
-    void each(const F& f) const {
-        parallel_each(count(), [&](std::size_t k) { f(begin + static_cast<std::uint32_t>(k)); });
-    }
-
-    // ‖y‖² of y(row) in the stopping rule's norm.
-    template <typename F>
-    double measure(const F& y) const {
-        const UntouchedVector<Mat3>& P = separate_stopping ? ws.stopping.inverse : ws.preconditioner.inverse;
-        return sum([&](std::uint32_t row) {
-            const Vec3 at = y(row);
-            return at.dot(P[row] * at);
-        });
-    }
-};
-
-ComponentSolve solve_single(const Rows& rows, const Mat3& inverse) {
+ComponentSolve solve_single(const ComponentRows& rows) {
     const std::uint32_t row = rows.begin;
     // x holds (I − S) z already, S y has no say.
-    rows.ws.x[row] += inverse * (rows.A.b[row] - rows.A.diagonal[row] * rows.ws.x[row]);
+    rows.ws.x[row] +=
+        rows.ws.constrained_blocks.inverse[row] * (rows.A.b[row] - rows.A.diagonal[row] * rows.ws.x[row]);
     return {1, 1, 0.0, true};
 }
 
-// Iterations with the constrained block grow with the distance that a spring's pull travels within a step, √κ
-// springs, as long as the component is larger than that (fitted on grids: sim/step/solve_components.cpp).
-// Here √κ is the mean over rows of a row's: its mean coupling over what of its diagonal is none. Rows beside
-// held ones, of which that is no mass, hardly count.
-bool pays_cycles(const Rows& rows) {
+// Here the √κ of expected_iterations() is the mean over rows of a row's: its mean coupling over what of its
+// diagonal is none. Rows beside held ones, of which that is no mass, hardly count.
+bool pays_cycles(const ComponentRows& rows) {
     const System& A = rows.A;
     const double reach = rows.sum([&](std::uint32_t row) {
         double coupled = 0, trace = 0;
@@ -98,103 +43,134 @@ bool pays_cycles(const Rows& rows) {
             coupled += A.entries[e].a + ww;
             trace += 3 * A.entries[e].a + ww;
         }
+        const std::span<const System::Block> blocks = A.blocks_of(row);
+        for (const System::Block& block : blocks) {
+            coupled += std::abs(block.K.trace());
+            trace -= block.K.trace();
+        }
         const double own = (A.diagonal[row].trace() - trace) / 3;
-        const std::uint32_t count = A.start[row + 1] - A.start[row];
-        return count > 0 && own > 0 ? std::sqrt(coupled / (count * own)) : 0.0;
+        const std::size_t count = A.start[row + 1] - A.start[row] + blocks.size();
+        return count > 0 && own > 0 ? std::sqrt(coupled / (static_cast<double>(count) * own)) : 0.0;
     }) / rows.count();
-    const double most = std::sqrt(static_cast<double>(rows.count()));
-    return 6.0 * std::pow(std::min(reach, most), 0.75) > iterations_worth_cycles;
+    return expected_iterations(reach, rows.count()) > iterations_worth_cycles;
 }
 
-ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
-    const System& A = rows.A;
-    std::vector<Vec3>& x = rows.ws.x;
-    UntouchedVector<Vec3>&r = rows.ws.r, &p = rows.ws.p, &q = rows.ws.q;
-    const UntouchedVector<Mat3>& P = rows.ws.preconditioner.inverse;
-    const bool swept = is_swept(options.preconditioner);
-    ComponentSolve result;
+// CG's problem on the rows of a component; its z and q are one vector, one after the other. The residual is
+// measured with constrained blocks, which as preconditioner are applied while that is done.
+class RowProblem {
+public:
+    explicit RowProblem(const ComponentRows& rows) : rows_(rows), P_(rows.ws.constrained_blocks.inverse) {}
 
-    // The constraint force that A x − b holds outside the free directions is no residual. P would take it
-    // away, but to rounding only, and what is left outgrows a residual that has become small: so it never
-    // gets in.
-    const std::vector<const Constraint*>& constraint = rows.ws.constraint;
-    const auto filtered = [&](std::uint32_t row, const Vec3& y) {
-        return constraint[row] ? Vec3(constraint[row]->S * y) : y;
-    };
-    // Nor is it a right-hand side: P would take it away from b to rounding only, which may be below zero.
-    const double target = options.tolerance * options.tolerance *
-                          rows.measure([&](std::uint32_t row) { return filtered(row, A.b[row]); });
-    rows.each([&](std::uint32_t row) { r[row] = filtered(row, A.b[row] - row_times(A, row, x)); });
-    result.rvm = rows.count();
-    const auto residual_at = [&](std::uint32_t row) { return r[row]; };
-
-    Aggregation* const aggregation = rows.ws.aggregation_of[rows.component];
-    const bool chooses = rows.chooses;
-    bool cycles = aggregation && (!chooses || pays_cycles(rows));
-    std::uint32_t until = !aggregation ? ever : cycles ? most_aggregation_cycles : most_iterations;
-    bool built = false;
-    // q = P⁻¹ r; returns r·q
-    const auto precondition = [&] {
-        if (cycles) {
-            if (!built)
-                aggregation->build(A, rows.components, rows.component, rows.ws.aggregates, constraint);
-            built = true;
-            aggregation->apply(r, q);
-        } else if (swept) {
-            sweep(rows.ws.sweeps, rows.begin, rows.end, r, q);
-        } else {
-            rows.each([&](std::uint32_t row) { q[row] = P[row] * r[row]; });
-        }
-        return rows.sum([&](std::uint32_t row) { return r[row].dot(q[row]); });
-    };
-    // ‖r‖² in the stopping rule's norm; rho where that is r·q
-    const auto measured = [&](double rho) {
-        return rows.separate_stopping || cycles ? rows.measure(residual_at) : rho;
-    };
-    // The first direction: from the start, or when another preconditioner takes over.
-    const auto begin = [&] {
-        const double rho = precondition();
-        rows.each([&](std::uint32_t row) { p[row] = q[row]; });
-        return rho;
-    };
-    double residual = rows.measure(residual_at), rho = residual > target ? begin() : 0.0;
-
-    while (residual > target && result.iterations < static_cast<std::uint32_t>(options.max_iterations)) {
-        // Rounding may leave single precision without a direction to go.
-        if (result.iterations >= until || (cycles && !(rho > 0))) {
-            until = ever;
-            cycles = !cycles;
-            rho = begin();
-        }
-        const double curvature = rows.sum([&](std::uint32_t row) {
-            q[row] = row_times(A, row, p);
-            return p[row].dot(q[row]);
-        });
-        ++result.iterations;
-        result.rvm += rows.count();
-        // Zero curvature: p is zero to rounding, nothing further can be gained.
-        if (!(curvature > 0)) break;
-        const double alpha = rho / curvature;
-        const auto advance = [&](std::uint32_t row) {
-            x[row] += alpha * p[row];
-            r[row] = filtered(row, r[row] - alpha * q[row]);
-        };
-        const bool apart = swept || cycles;
-        if (apart) rows.each(advance);
-        if (cycles) {
-            residual = measured(rho);
-            if (!(residual > target)) break;
-        }
-        const double rho_next = apart ? precondition() : rows.sum([&](std::uint32_t row) {
-            advance(row);
-            q[row] = P[row] * r[row];
-            return r[row].dot(q[row]);
-        });
-        const double beta = rho_next / rho;
-        rho = rho_next;
-        rows.each([&](std::uint32_t row) { p[row] = q[row] + beta * p[row]; });
-        if (!cycles) residual = measured(rho);
+    // Goes on with another preconditioner, which is built.
+    void take(const PreconditionerMethod& method) {
+        method_ = &method;
+        measures_ = method.kind == Preconditioner::constrained_block;
+        if (measures_) method.apply(rows_);
+        if (measures_) rho_ = product();
     }
+    // ‖Sb‖² and ‖r‖², r = S (b − A x)
+    double right_side() const {
+        // The constraint force that A x − b holds outside the free directions is no residual. P would take it
+        // away, but to rounding only, and what is left outgrows a residual that has become small: so it never
+        // gets in. Nor is it a right-hand side, where what is left may be below zero.
+        return norm([&](std::uint32_t row) { return rows_.filtered(row, rows_.A.b[row]); });
+    }
+    double first_residual() {
+        rows_.each([&](std::uint32_t row) {
+            r_[row] = rows_.filtered(row, rows_.A.b[row] - row_times(rows_.A, row, x_));
+        });
+        return norm([&](std::uint32_t row) { return r_[row]; });
+    }
+
+    double precondition() {
+        if (measures_) return rho_;
+        method_->apply(rows_);
+        return product();
+    }
+    double multiply(double beta) {
+        rows_.each([&](std::uint32_t row) {
+            if (beta == 0) {
+                p_[row] = q_[row];
+            } else {
+                p_[row] = q_[row] + beta * p_[row];
+            }
+        });
+        return rows_.sum([&](std::uint32_t row) {
+            q_[row] = row_times(rows_.A, row, p_);
+            return p_[row].dot(q_[row]);
+        });
+    }
+    double measure(double alpha) {
+        const auto advance = [&](std::uint32_t row) {
+            x_[row] += alpha * p_[row];
+            r_[row] = rows_.filtered(row, r_[row] - alpha * q_[row]);
+        };
+        if (!measures_) {
+            return norm([&](std::uint32_t row) {
+                advance(row);
+                return r_[row];
+            });
+        }
+        rho_ = rows_.sum([&](std::uint32_t row) {
+            advance(row);
+            q_[row] = P_[row] * r_[row];
+            return r_[row].dot(q_[row]);
+        });
+        return rho_;
+    }
+
+private:
+    double product() const {
+        return rows_.sum([&](std::uint32_t row) { return r_[row].dot(q_[row]); });
+    }
+    // ‖y‖² of y(row) in the stopping rule's norm.
+    template <typename F>
+    double norm(const F& y) const {
+        return rows_.sum([&](std::uint32_t row) {
+            const Vec3 at = y(row);
+            return at.dot(P_[row] * at);
+        });
+    }
+
+    const ComponentRows& rows_;
+    const UntouchedVector<Mat3>& P_;
+    std::vector<Vec3>& x_ = rows_.ws.x;
+    UntouchedVector<Vec3>&r_ = rows_.ws.r, &p_ = rows_.ws.p, &q_ = rows_.ws.q;
+    const PreconditionerMethod* method_ = nullptr;
+    bool measures_ = false;
+    double rho_ = 0;  // r·z, where it was measured
+};
+
+ComponentSolve solve_component(const ComponentRows& rows, const SolveOptions& options) {
+    RowProblem problem(rows);
+    ComponentSolve result;
+    const double target = options.tolerance * options.tolerance * problem.right_side();
+    double residual = problem.first_residual();
+
+    // The method, and the one that may take over from it, once.
+    const PreconditionerMethod* method = &method_on_rows(options.preconditioner);
+    const PreconditionerMethod* other = nullptr;
+    std::uint32_t until = ever;
+    if (rows.ws.aggregation_of[rows.component]) {
+        other = &method_of(Preconditioner::aggregation);
+        until = most_iterations;
+        if (options.preconditioner == Preconditioner::aggregation || pays_cycles(rows)) {
+            std::swap(method, other);
+            until = most_cycles_of_multigrid;
+        }
+    }
+    const auto limit = static_cast<std::uint32_t>(options.max_iterations);
+    while (residual > target && result.iterations < limit) {
+        if (method->build) method->build(rows);
+        problem.take(*method);
+        residual = conjugate_gradients(problem, residual, target, std::min(until, limit), result.iterations);
+        // Rounding may leave cycles, in single precision, without a direction to go.
+        const bool gives_way = result.iterations >= until || method->kind == Preconditioner::aggregation;
+        if (!other || !gives_way) break;
+        std::swap(method, other);
+        until = ever;
+    }
+    result.rvm = rows.count() * (1 + static_cast<std::uint64_t>(result.iterations));
     result.converged = residual <= target;
     result.residual = target > 0 ? options.tolerance * std::sqrt(std::max(residual, 0.0) / target) : 0.0;
     return result;
@@ -217,21 +193,18 @@ void assign_aggregations(const System& A, const Components& components, Precondi
 }  // namespace
 
 void solve(const System& A, const Components& components, const Constraints& constraints,
-           std::span<const Vec3> guess, const SolveOptions& asked, SolveWorkspace& ws,
+           std::span<const Vec3> guess, const SolveOptions& options, SolveWorkspace& ws,
            std::vector<ComponentSolve>& out) {
-    SolveOptions options = asked;
-    options.preconditioner = on_rows(asked.preconditioner);
     const std::size_t n = A.rows();
     ws.x.resize(n);
     ws.r.resize(n);
     ws.p.resize(n);
     ws.q.resize(n);
     ws.constraint.resize(n);
-    const bool separate = options.preconditioner != Preconditioner::constrained_block;
-    build_preconditioner(options.preconditioner, A, components, constraints, ws.preconditioner);
-    if (separate)
-        build_preconditioner(Preconditioner::constrained_block, A, components, constraints, ws.stopping);
-    if (is_swept(options.preconditioner)) build_sweeps(A, components, constraints, ws.stopping, ws.sweeps);
+    build_preconditioner(Preconditioner::constrained_block, A, components, constraints,
+                         ws.constrained_blocks);
+    if (const auto build_all = method_on_rows(options.preconditioner).build_all)
+        build_all(A, components, constraints, ws);
 
     out.assign(components.count(), {});
     const auto component_size_one = [&](std::uint32_t row) {
@@ -247,26 +220,15 @@ void solve(const System& A, const Components& components, const Constraints& con
         ws.x[r] = c ? Vec3(c->S * y + (c->z - c->S * c->z)) : y;
     });
 
-    assign_aggregations(A, components, asked.preconditioner, ws);
+    assign_aggregations(A, components, options.preconditioner, ws);
     // A component of k chunks may straddle one more; numbering the large ones keeps their partials apart.
     std::size_t large_count = 0;
     for (std::size_t c = 0; c < components.count(); ++c) large_count += components.size(c) > chunk_size;
     ws.partials.resize(chunk_count(n) + large_count);
     const auto run = [&](std::size_t c, double* partials) {
-        const Rows rows{A,
-                        components,
-                        ws,
-                        c,
-                        components.start[c],
-                        components.start[c + 1],
-                        partials,
-                        asked.preconditioner == Preconditioner::automatic,
-                        separate};
-        if (options.preconditioner == Preconditioner::ic0 && rows.count() > 1)
-            factorise(A, components, constraints, rows.begin, rows.end, ws.sweeps);
-        out[c] = rows.count() == 1
-                     ? solve_single(rows, (separate ? ws.stopping : ws.preconditioner).inverse[rows.begin])
-                     : solve_component(rows, options);
+        const ComponentRows rows{
+            A, components, constraints, ws, c, components.start[c], components.start[c + 1], partials};
+        out[c] = rows.count() == 1 ? solve_single(rows) : solve_component(rows, options);
     };
     // Components of many chunks go first, so that the small ones fill the gaps that they leave.
     tbb::task_group large;

@@ -33,8 +33,9 @@ struct ComponentSolve {
 
 /// Memory of the solver, kept between steps.
 struct SolveWorkspace {
-    BlockPreconditioner preconditioner, stopping;
-    SweepPreconditioner sweeps;                 ///< for ssor and ic0 only
+    BlockPreconditioner constrained_blocks;     ///< whatever the preconditioner: they measure residuals
+    BlockPreconditioner blocks;                 ///< of none, diagonal and block
+    SweepPreconditioner sweeps;                 ///< of ssor and ic0
     std::vector<Vec3> x;                        ///< (rows)
     UntouchedVector<Vec3> r, p, q;              ///< (rows)
     std::vector<double> partials;               ///< (chunks of rows)

@@ -12,10 +12,22 @@ Mat3 filtered(const Constraint* c, const Mat3& block) {
     return c ? Mat3(c->S * block) : block;
 }
 
-// S_row (−a I − w wᵀ) S_column
-Mat3 projected(const System::Entry& e, const Constraint* row, const Constraint* column) {
-    const Mat3 block = -(e.a * Mat3::Identity() + e.w * e.w.transpose());
-    return filtered(row, filtered(column, block.transpose()).transpose());
+// S_row B S_column of a symmetric block
+Mat3 projected(const Mat3& block, const Constraint* row, const Constraint* column) {
+    return filtered(row, filtered(column, block).transpose());
+}
+
+// f(column, A_rc) for each block below the diagonal.
+template <typename F>
+void each_lower(const System& A, std::uint32_t row, const F& f) {
+    for (std::uint32_t e = A.start[row]; e < A.start[row + 1]; ++e) {
+        const System::Entry& spring = A.entries[e];
+        if (spring.column < row)
+            f(spring.column, Mat3(-(spring.a * Mat3::Identity() + spring.w * spring.w.transpose())));
+    }
+    for (const System::Block& block : A.blocks_of(row)) {
+        if (block.column < row) f(block.column, block.K.matrix());
+    }
 }
 
 // S C S + c (I − S), c = trace/3 as in the constrained block.
@@ -33,8 +45,8 @@ void build_sweeps(const System& A, const Components& components, const Constrain
     out.carry.resize(A.rows());
     out.start.assign(rows + 1, 0);
     parallel_each(rows, [&](std::size_t row) {
-        for (std::uint32_t e = A.start[row]; e < A.start[row + 1]; ++e)
-            out.start[row + 1] += A.entries[e].column < row;
+        each_lower(A, static_cast<std::uint32_t>(row),
+                   [&](std::uint32_t, const Mat3&) { ++out.start[row + 1]; });
     });
     for (std::size_t row = 0; row < rows; ++row) out.start[row + 1] += out.start[row];
     out.lower.resize(out.start[rows]);
@@ -42,15 +54,12 @@ void build_sweeps(const System& A, const Components& components, const Constrain
         const Constraint* mine = constraints.find(components.order[row]);
         auto* const first = out.lower.data() + out.start[row];
         auto* last = first;
-        for (std::uint32_t e = A.start[row]; e < A.start[row + 1]; ++e) {
-            const System::Entry& entry = A.entries[e];
-            if (entry.column >= row) continue;
-            *last++ = {entry.column,
-                       projected(entry, mine, constraints.find(components.order[entry.column]))};
-        }
+        each_lower(A, static_cast<std::uint32_t>(row), [&](std::uint32_t column, const Mat3& block) {
+            *last++ = {column, projected(block, mine, constraints.find(components.order[column]))};
+        });
         std::sort(first, last, [](const auto& a, const auto& b) { return a.column < b.column; });
-        // Two springs between the same particles (one of them self-collision's) are one block; the other
-        // stays, as zero.
+        // Two springs between the same particles (one of them self-collision's), or a spring and a stencil,
+        // are one block; the other stays, as zero.
         for (auto* e = first; e + 1 < last; ++e) {
             if (e->column != (e + 1)->column) continue;
             (e + 1)->block += e->block;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sim/linear/assemble_stencils.hpp"
+
 namespace unravel::sim {
 
 namespace {
@@ -22,7 +24,7 @@ Coupling coupling_of(const SpringFamily& family, std::uint32_t s, double h) {
 
 }  // namespace
 
-void assemble(std::span<const SpringFamily> families, const Load& load, const Components& components,
+void assemble(const Couplings& couplings, const Load& load, const Components& components,
               const Constraints& constraints, double h, System& out,
               std::span<const std::uint8_t> elsewhere) {
     const std::size_t n = load.mass.size();
@@ -49,7 +51,7 @@ void assemble(std::span<const SpringFamily> families, const Load& load, const Co
         std::uint32_t count = 0;
         out.start[row + 1] = 0;
         if (left_out(row, p)) return;
-        for (const SpringFamily& family : families) {
+        for (const SpringFamily& family : couplings.springs) {
             family.adjacency->each(p, [&](std::uint32_t s, std::uint32_t other) {
                 count += family.forces->state[s] == SpringState::implicit && !moved_to_b(row, other);
             });
@@ -66,7 +68,7 @@ void assemble(std::span<const SpringFamily> families, const Load& load, const Co
         Mat3 diagonal = load.mass[p] * Mat3::Identity();
         Vec3 b = load.impulse[p];
         std::uint32_t e = out.start[row];
-        for (const SpringFamily& family : families) {
+        for (const SpringFamily& family : couplings.springs) {
             const std::span<const Vec3> drift = family.drift.empty() ? load.drift : family.drift;
             family.adjacency->each(p, [&](std::uint32_t s, std::uint32_t other) {
                 if (family.forces->state[s] != SpringState::implicit) return;
@@ -86,6 +88,7 @@ void assemble(std::span<const SpringFamily> families, const Load& load, const Co
         out.diagonal[row] = diagonal;
         out.b[row] = b;
     });
+    assemble_stencils(couplings.stencils, load, components, constraints, h, out);
 }
 
 }  // namespace unravel::sim

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/linear/conjugate_gradients.hpp"
+
 namespace unravel::sim {
 
 namespace {
@@ -16,10 +18,6 @@ constexpr std::uint32_t least_rows = 256;
 constexpr double least_share = 0.3;
 // Stiffest coupling over mass that single precision bears.
 constexpr double stiffest_in_float = 1e5;
-// What a solve by multigrid costs, set-up included, in iterations with blocks.
-constexpr std::uint32_t iterations_worth_multigrid = 60;
-// Cycles after which multigrid gives way to blocks.
-constexpr std::uint32_t most_multigrid_cycles = 60;
 
 const GridSprings* grid_of(std::span<const GridSprings> grids, std::uint32_t particle) {
     for (const GridSprings& g : grids) {
@@ -35,25 +33,42 @@ bool may_use_grids(const SolveOptions& options) {
            options.tolerance >= grid_cg_tolerance;
 }
 
-void plan_solves(std::span<const GridSprings> grids, std::span<const SpringFamily> families,
-                 const Components& components, const SolveOptions& options, GridSolves& ws) {
+// Which components have what is in no grid's own springs: those between cloth that touches itself, stitches,
+// bend springs, and stencils.
+void mark_beyond_grids(const Couplings& couplings, const Components& components,
+                       std::vector<std::uint8_t>& beyond) {
+    beyond.assign(components.count(), 0);
+    const auto mark = [&](std::uint32_t p) {
+        if (components.label[p] >= 0) beyond[static_cast<std::size_t>(components.label[p])] = 1;
+    };
+    for (const SpringFamily& family : couplings.springs.subspan(1)) {
+        for (std::size_t s = 0; s < family.forces->state.size(); ++s) {
+            if (family.forces->state[s] != SpringState::implicit) continue;
+            mark(family.springs->i[s]);
+            mark(family.springs->j[s]);
+        }
+    }
+    for (const Stencils& stencils : couplings.stencils) {
+        for (std::size_t s = 0; s < stencils.list.size(); ++s) {
+            if (!stencils.is_implicit(s)) continue;
+            const Stencil& stencil = stencils.list[s];
+            for (std::uint32_t k = 0; k < stencil.count; ++k)
+                if (stencil.w[k] != 0) mark(stencil.p[k]);
+        }
+    }
+}
+
+void plan_solves(const StepSystem& step, const SolveOptions& options, GridSolves& ws) {
+    const std::span<const GridSprings> grids = step.grids;
+    const Components& components = step.components;
     SolvePlan& plan = ws.plan;
     plan.on_grid.clear();
     plan.elsewhere.clear();
     if (!may_use_grids(options) || grids.empty()) return;
-    // Springs between cloth that touches itself are in no grid's stencil.
-    ws.touched.assign(components.count(), 0);
-    for (const SpringFamily& family : families.subspan(1)) {
-        for (std::size_t s = 0; s < family.forces->state.size(); ++s) {
-            if (family.forces->state[s] != SpringState::implicit) continue;
-            for (const std::uint32_t p : {family.springs->i[s], family.springs->j[s]}) {
-                if (components.label[p] >= 0) ws.touched[static_cast<std::size_t>(components.label[p])] = 1;
-            }
-        }
-    }
+    mark_beyond_grids(step.couplings, components, ws.beyond);
     for (std::size_t c = 0; c < components.count(); ++c) {
         const std::uint32_t size = components.size(c);
-        if (size < least_rows || ws.touched[c]) continue;
+        if (size < least_rows || ws.beyond[c]) continue;
         const std::uint32_t first = components.order[components.start[c]],
                             last = components.order[components.start[c + 1] - 1];
         const GridSprings* g = grid_of(grids, first);
@@ -67,19 +82,17 @@ void plan_solves(std::span<const GridSprings> grids, std::span<const SpringFamil
     for (const SolvePlan::OnGrid& task : plan.on_grid) plan.elsewhere[task.component] = 1;
 }
 
-// Block-preconditioned iterations grow with the distance that a spring's pull travels within a step, √κ grid
-// spacings, as long as the component is larger than that; fitted to hanging and draped sheets.
+// A grid's reach is that of its stiffest spring.
 bool pays_multigrid(const GridSystem& system) {
-    const double reach = std::min(std::sqrt(system.stiffest), std::sqrt(static_cast<double>(system.rows)));
-    return 6.0 * std::pow(reach, 0.75) > iterations_worth_multigrid;
+    return expected_iterations(std::sqrt(system.stiffest), system.rows) > iterations_worth_cycles;
 }
 
 void solve_grid(const SolveOptions& options, GridSolves::Grid& grid) {
     const bool chooses = options.preconditioner == Preconditioner::automatic;
     const bool multigrid =
         options.preconditioner == Preconditioner::multigrid || (chooses && pays_multigrid(grid.system));
-    const std::uint32_t patience = multigrid ? most_multigrid_cycles
-                                   : chooses ? iterations_worth_multigrid
+    const std::uint32_t patience = multigrid ? most_cycles_of_multigrid
+                                   : chooses ? iterations_worth_cycles
                                              : std::numeric_limits<std::uint32_t>::max();
     grid.solved = grid.system.stiffest <= stiffest_in_float &&
                   solve_on_grid(grid.system, multigrid, patience, options, grid.cg, grid.solve);
@@ -112,26 +125,26 @@ void make_aggregates_where_needed(const StepSystem& step, const SolveOptions& op
         const Stitches& all = *step.stitches;
         for (std::size_t s = 0; s < all.size(); ++s) joins.push_back({all.i[s], all.j[s], all.stiffness[s]});
     }
-    ws.aggregates = make_aggregates(step.load.mass.size(), *step.families[0].springs, joins);
+    ws.aggregates = make_aggregates(step.load.mass.size(), *step.couplings.springs[0].springs, joins);
 }
 
 }  // namespace
 
 void assemble_components(const StepSystem& step, const SolveOptions& options, GridSolves& grids,
                          System& rows) {
-    plan_solves(step.grids, step.families, step.components, options, grids);
+    plan_solves(step, options, grids);
     const SolvePlan& plan = grids.plan;
     while (grids.grids.size() < plan.on_grid.size())
         grids.grids.push_back(std::make_unique<GridSolves::Grid>());
     tbb::task_group giants;
     for (std::size_t k = 0; k < plan.on_grid.size(); ++k) {
         giants.run([&, k] {
-            load_grid_system(*plan.on_grid[k].springs, step.families[0], step.load, step.components,
+            load_grid_system(*plan.on_grid[k].springs, step.couplings.springs[0], step.load, step.components,
                              plan.on_grid[k].component, step.constraints, step.guess, step.h,
                              grids.grids[k]->system);
         });
     }
-    assemble(step.families, step.load, step.components, step.constraints, step.h, rows, plan.elsewhere);
+    assemble(step.couplings, step.load, step.components, step.constraints, step.h, rows, plan.elsewhere);
     giants.wait();
 }
 
@@ -155,7 +168,7 @@ void solve_components(const StepSystem& step, const SolveOptions& options, GridS
         failed = failed || !grids.grids[k]->solved;
     }
     if (failed) {
-        assemble(step.families, step.load, step.components, step.constraints, step.h, rows, plan.elsewhere);
+        assemble(step.couplings, step.load, step.components, step.constraints, step.h, rows, plan.elsewhere);
         solve_rows();
     }
     for (std::size_t k = 0; k < plan.on_grid.size(); ++k) {

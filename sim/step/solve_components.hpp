@@ -13,8 +13,9 @@
 namespace unravel::sim {
 
 /// What solves each component of a step: rows in double (sim/linear/solve.hpp), or, for a large one that lies
-/// on a grid, the grid's own solver in single precision (sim/kernels/grid_cg.hpp). Chosen from the system
-/// alone, so that the same input gives the same bits.
+/// on a grid and has no springs but the grid's and no stencils, the grid's own solver in single precision
+/// (sim/kernels/grid_cg.hpp). Chosen from the system alone,
+/// so that the same input gives the same bits.
 struct SolvePlan {
     struct OnGrid {
         std::uint32_t component;
@@ -34,13 +35,13 @@ struct GridSolves {
         bool solved = false;
     };
     std::vector<std::unique_ptr<Grid>> grids;  ///< one per component solved on a grid
-    std::vector<std::uint8_t> touched;         ///< (components) 1: springs of self-collision in it
+    std::vector<std::uint8_t> beyond;          ///< (components) 1: coupled by more than a grid's springs
 };
 
 /// What a step's linear system is made of.
 struct StepSystem {
     std::span<const GridSprings> grids;  ///< of the cloths; may be empty
-    std::span<const SpringFamily> families;
+    Couplings couplings;                 ///< the cloths' springs first
     const Load& load;
     const Components& components;
     const Constraints& constraints;

@@ -49,14 +49,13 @@ void count_solves(const std::vector<ComponentSolve>& solves, StepReport& report)
 }
 
 // The oracle: the very same system, undecomposed.
-void compare_whole(const ClothModel& model, const StepOptions& options,
-                   std::span<const SpringFamily> families, const Load& load, std::span<const Vec3> guess,
-                   StepWorkspace& ws, StepReport& report) {
+void compare_whole(const ClothModel& model, const StepOptions& options, const Couplings& couplings,
+                   const Load& load, std::span<const Vec3> guess, StepWorkspace& ws, StepReport& report) {
     report.rvm_whole = report.rvm_whole.value_or(0);
     if (!ws.coupled) return;
     whole_cloth(model.size(), ws.whole);
-    const StepSystem system{model.grids,    families, load,       ws.whole,
-                            ws.constraints, guess,    ws.stage.h, &model.stitches};
+    const StepSystem system{model.grids,    couplings, load,       ws.whole,
+                            ws.constraints, guess,     ws.stage.h, &model.stitches};
     assemble_components(system, options.solve, ws.whole_grid_solves, ws.whole_system);
     solve_components(system, options.solve, ws.whole_grid_solves, ws.whole_system, ws.whole_solve,
                      ws.whole_solves);
@@ -66,14 +65,7 @@ void compare_whole(const ClothModel& model, const StepOptions& options,
     }
 }
 
-bool any_implicit(std::span<const SpringFamily> families) {
-    return std::any_of(families.begin(), families.end(), [](const SpringFamily& family) {
-        const std::vector<SpringState>& state = family.forces->state;
-        return std::find(state.begin(), state.end(), SpringState::implicit) != state.end();
-    });
-}
-
-// With no implicit spring A is M: nothing is coupled, nothing assembled, nothing iterated.
+// With nothing implicit A is M: nothing is coupled, nothing assembled, nothing iterated.
 void solve_uncoupled(const ClothModel& model, StepWorkspace& ws) {
     lone_particles(model.size(), ws.constraints, ws.components);
     ws.solves.assign(ws.components.count(), {});
@@ -213,23 +205,23 @@ void linearise(const ClothModel& model, const StepOptions& options, double h, St
 void solve_stage(const ClothModel& model, const StepOptions& options, std::span<const Vec3> guess,
                  StageTimer& timer, StepWorkspace& ws, StepReport& report) {
     const std::size_t n = model.size();
-    const Families all = families_of(model, ws);
-    const std::span<const SpringFamily> families = all;
+    const Families families = families_of(model, ws);
+    const Couplings couplings{families, ws.stencils};
     const Load load{model.mass, ws.impulse, ws.drift};
     ws.dv.resize(n);
-    ws.coupled = any_implicit(families);
+    ws.coupled = any_implicit(couplings);
     if (!ws.coupled) {
         solve_uncoupled(model, ws);
         timer.lap(report.times.solve);
     } else {
         if (options.decompose) {
-            find_components(n, families, ws.constraints, ws.parent, ws.components);
+            find_components(n, couplings, ws.constraints, ws.parent, ws.components);
         } else {
             whole_cloth(n, ws.components);
         }
         timer.lap(report.times.graph);
-        const StepSystem system{model.grids,    families, load,       ws.components,
-                                ws.constraints, guess,    ws.stage.h, &model.stitches};
+        const StepSystem system{model.grids,    couplings, load,       ws.components,
+                                ws.constraints, guess,     ws.stage.h, &model.stitches};
         assemble_components(system, options.solve, ws.grid_solves, ws.system);
         timer.lap(report.times.assembly);
         solve_components(system, options.solve, ws.grid_solves, ws.system, ws.solve, ws.solves);
@@ -238,7 +230,7 @@ void solve_stage(const ClothModel& model, const StepOptions& options, std::span<
         timer.lap(report.times.solve);
     }
     if (!options.compare_whole) return;
-    compare_whole(model, options, families, load, guess, ws, report);
+    compare_whole(model, options, couplings, load, guess, ws, report);
     timer.lap(report.times.compare);
 }
 

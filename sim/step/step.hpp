@@ -60,6 +60,7 @@ struct StepWorkspace {
     std::vector<Vec3> air;               ///< (cells) N; empty as they are
     double t_end = 0;                    ///< s, the end of the step: what stitches are to have reached
     SelfCollisionWorkspace self;         ///< empty without self-collision and stitches
+    std::vector<Stencils> stencils;      ///< what else is implicit, by kind; remade with every linearisation
     std::vector<std::uint8_t> taut;      ///< (springs) 1: slack at x*, taut at the end; or empty
     std::vector<Vec3> ahead;             ///< (particles) where implicit springs are linearised; empty: at x*
     std::vector<Vec3> drift_from_start;  ///< (particles) drift for those that are linearised at x* even so

@@ -49,7 +49,7 @@ struct Graph {
         Components out;
         std::vector<std::uint32_t> scratch;
         const SpringFamily families[] = {{&springs, &adjacency, &forces}};
-        find_components(n, families, constraints, scratch, out);
+        find_components(n, {families}, constraints, scratch, out);
         return out;
     }
 

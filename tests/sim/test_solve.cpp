@@ -68,7 +68,7 @@ struct Problem {
     Components decomposed() const {
         Components components;
         std::vector<std::uint32_t> scratch;
-        find_components(n, families(), constraints, scratch, components);
+        find_components(n, {families()}, constraints, scratch, components);
         return components;
     }
     Components whole() const {
@@ -78,7 +78,7 @@ struct Problem {
     }
     System assembled(const Components& components) const {
         System system;
-        assemble(families(), {mass, impulse, drift}, components, constraints, h, system);
+        assemble({families()}, {mass, impulse, drift}, components, constraints, h, system);
         return system;
     }
     std::vector<Vec3> solved(const Components& components, Preconditioner kind, double tolerance,

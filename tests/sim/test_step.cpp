@@ -38,8 +38,8 @@ TEST_CASE("at every step the decomposed solution meets the whole system's tolera
         const Families families = families_of(simulation.model, ws);
         const Load load{simulation.model.mass, ws.impulse, ws.drift};
         System system, parts;
-        assemble(families, load, whole, ws.constraints, 0.005, system);
-        assemble(families, load, ws.components, ws.constraints, 0.005, parts);
+        assemble({families}, load, whole, ws.constraints, 0.005, system);
+        assemble({families}, load, ws.components, ws.constraints, 0.005, parts);
         BlockPreconditioner P;
         build_preconditioner(Preconditioner::constrained_block, system, whole, ws.constraints, P);
         double residual = 0, right = 0;

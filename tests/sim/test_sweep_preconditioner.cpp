@@ -70,7 +70,7 @@ struct Problem {
 
     void assemble_for(const Components& components, System& A) const {
         const SpringFamily families[] = {{&springs, &adjacency, &forces}};
-        assemble(families, Load{mass, impulse, drift}, components, constraints, h, A);
+        assemble({families}, Load{mass, impulse, drift}, components, constraints, h, A);
     }
 
     // Sx = Sb, (I − S)x = (I − S)z by a factorisation of S A S + I − S. (particles)
@@ -107,7 +107,7 @@ struct Problem {
         std::vector<std::uint32_t> scratch;
         const SpringFamily families[] = {{&springs, &adjacency, &forces}};
         if (decompose) {
-            find_components(n, families, constraints, scratch, components);
+            find_components(n, {families}, constraints, scratch, components);
         } else {
             whole_cloth(n, components);
         }

@@ -71,6 +71,8 @@ FoldedSystem fold(const StepSystem& step, const System& rows) {
             const Mat3 block = entry.a * Mat3::Identity() + entry.w * entry.w.transpose();
             add(row, entry.column, -(S[row] * block * S[entry.column]));
         }
+        for (const System::Block& block : rows.blocks_of(row))
+            add(row, block.column, S[row] * block.K.matrix() * S[block.column]);
     }
     out.A.resize(size, size);
     out.A.setFromTriplets(entries.begin(), entries.end());

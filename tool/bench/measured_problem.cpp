@@ -88,8 +88,14 @@ void MeasuredProblem::capture(int threads) {
 
 StepSystem MeasuredProblem::system(const Components& components) const {
     const StepWorkspace& ws = simulation_.ws;
-    return {simulation_.model.grids, families_, load_,      components,
-            ws.constraints,          guess_,    ws.stage.h, &simulation_.model.stitches};
+    return {simulation_.model.grids,
+            {families_, ws.stencils},
+            load_,
+            components,
+            ws.constraints,
+            guess_,
+            ws.stage.h,
+            &simulation_.model.stitches};
 }
 
 MeasuredProblem::Solve MeasuredProblem::solve(const Components& components, const SolveOptions& options,
@@ -140,10 +146,10 @@ const GridSystem* MeasuredProblem::grid() const {
 FoldedSystem MeasuredProblem::folded() {
     StepWorkspace& ws = simulation_.ws;
     const StepSystem step = system(ws.components);
-    assemble(step.families, step.load, step.components, step.constraints, step.h, ws.system);
+    assemble(step.couplings, step.load, step.components, step.constraints, step.h, ws.system);
     const std::uint32_t rows = ws.components.start.back();
     rows_ = rows;
-    entries_ = ws.system.start[rows];
+    entries_ = ws.system.start[rows] + (ws.system.block_start.empty() ? 0 : ws.system.block_start[rows]);
     return fold(step, ws.system);
 }
 

@@ -55,7 +55,7 @@ double bytes(const ClothState& s) {
     return bytes(s.x, s.v, s.dv, s.contacts, s.x_previous, s.v_previous);
 }
 double bytes(const GridSolves& solves) {
-    double sum = bytes(solves.plan.elsewhere, solves.touched);
+    double sum = bytes(solves.plan.elsewhere, solves.beyond);
     for (const auto& grid : solves.grids) {
         const GridSystem& s = grid->system;
         sum += bytes(s.couplings, s.mass, s.D, s.P, s.active, s.slot, s.directions, s.b, s.x);
@@ -120,10 +120,12 @@ MemoryRecord account_memory(const Simulation& simulation, double peak) {
                                     w.self.voxel_start, w.self.voxel_particles, w.self.voxel_of));
     add("components", bytes(w.parent, w.components.label, w.components.order, w.components.start));
     const double by_rows = row_share(w.system, w.components);
-    add("system by rows: A, b", bytes(w.system.row_of, w.system.start, w.system.entries, w.system.elsewhere) +
-                                    by_rows * bytes(w.system.diagonal, w.system.b));
+    const System& A = w.system;
+    add("system by rows: A, b", bytes(A.row_of, A.start, A.entries, A.block_start, A.blocks, A.elsewhere) +
+                                    bytes(A.stencils_of.start, A.stencils_of.entries, A.stencils_of.columns) +
+                                    by_rows * bytes(A.diagonal, A.b));
     add("solver by rows", bytes(w.solve.x, w.solve.constraint) +
-                              by_rows * (bytes(w.solve.preconditioner.inverse, w.solve.stopping.inverse) +
+                              by_rows * (bytes(w.solve.constrained_blocks.inverse, w.solve.blocks.inverse) +
                                          bytes(w.solve.r, w.solve.p, w.solve.q)));
     add("systems on the grid", bytes(w.grid_solves));
     add("their CG vectors", bytes_of_cg(w.grid_solves));

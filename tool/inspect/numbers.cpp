@@ -115,8 +115,8 @@ Json particle_numbers(const InspectedStep& step, std::int64_t particle) {
     const StepWorkspace& ws = step.simulation.ws;
     // Parts of the step may have been solved without being assembled.
     System system;
-    assemble(families_of(model, ws), {model.mass, ws.impulse, ws.drift}, ws.components, ws.constraints,
-             ws.stage.h, system);
+    assemble({families_of(model, ws), ws.stencils}, {model.mass, ws.impulse, ws.drift}, ws.components,
+             ws.constraints, ws.stage.h, system);
     const std::uint32_t row = system.row_of[p];
     Json json{{"particle", p},
               {"place", place_json(model, p)},
@@ -138,6 +138,8 @@ Json particle_numbers(const InspectedStep& step, std::int64_t particle) {
     }
     for (std::uint32_t e = system.start[row]; e < system.start[row + 1]; ++e)
         json["coupled_particles"].push_back(ws.components.order[system.entries[e].column]);
+    for (const System::Block& block : system.blocks_of(row))
+        json["coupled_particles"].push_back(ws.components.order[block.column]);
     for (const Contact& c : step.record.state.contacts) {
         if (c.particle != p || c.force < 0) continue;
         json["contacts"].push_back(

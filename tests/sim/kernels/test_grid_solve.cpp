@@ -88,7 +88,7 @@ struct Sheet {
             }
         }
         std::vector<std::uint32_t> scratch;
-        find_components(n, families(), constraints, scratch, components);
+        find_components(n, {families()}, constraints, scratch, components);
     }
     SpringFamily family() const { return {&model.springs, &model.spring_adjacency, &forces, {}, at}; }
     std::vector<SpringFamily> families() const { return {family()}; }
@@ -132,7 +132,7 @@ TEST_CASE("on a grid every component meets the stopping rule of the assembled sy
                 const Sheet sheet(layout, held, slack);
                 const Components& all = sheet.components;
                 System A;
-                assemble(sheet.families(), sheet.load(), all, sheet.constraints, Sheet::h, A);
+                assemble({sheet.families()}, sheet.load(), all, sheet.constraints, Sheet::h, A);
                 BlockPreconditioner P;
                 build_preconditioner(Preconditioner::constrained_block, A, all, sheet.constraints, P);
                 for (std::uint32_t c = 0; c < all.count(); ++c) {
@@ -259,5 +259,48 @@ TEST_CASE("steps solved on grids follow those solved by rows, several cloths at 
         double most = 0;
         for (std::size_t p = 0; p < rows.size(); ++p) most = std::max(most, (rows[p] - grid[p]).norm());
         CHECK(most < 1e-5);
+    }
+}
+
+TEST_CASE("a grid's component that a stencil has a part in is solved by rows, with the stencil in it") {
+    const Sheet sheet(layouts[0], pins);
+    const std::vector<SpringFamily> families = sheet.families();
+    Stencil touch;
+    touch.count = 4;
+    touch.p = {5 * 37 + 7, 20 * 37 + 7, 20 * 37 + 8, 21 * 37 + 7};
+    touch.w = {1, -0.3, -0.3, -0.4};
+    touch.u = Vec3(1, 2, 2) / 3;
+    touch.along = 3000;
+    touch.damping_across = 0.1;
+    const Load load = sheet.load();
+    for (const bool touched : {false, true}) {
+        const Stencils lists[] = {{std::span(&touch, touched ? 1 : 0)}};
+        const Couplings all{families, lists};
+        Components components;
+        std::vector<std::uint32_t> scratch;
+        find_components(sheet.model.size(), all, sheet.constraints, scratch, components);
+        REQUIRE(components.count() == 1);
+        const StepSystem step{sheet.model.grids, all,         load,    components,
+                              sheet.constraints, sheet.guess, Sheet::h};
+        GridSolves grids;
+        System rows;
+        SolveWorkspace ws;
+        std::vector<ComponentSolve> solves;
+        SolveOptions options;
+        options.preconditioner = Preconditioner::automatic;
+        options.tolerance = 1e-6;
+        assemble_components(step, options, grids, rows);
+        CHECK(grids.plan.on_grid.size() == (touched ? 0 : 1));
+        solve_components(step, options, grids, rows, ws, solves);
+        CHECK(solves[0].converged);
+        // What it solved is the whole of it.
+        System A;
+        assemble(all, load, components, sheet.constraints, Sheet::h, A);
+        double residual = 0, right = 0;
+        for (std::uint32_t row = 0; row < components.size(0); ++row) {
+            residual += (row_times(A, row, ws.x) - A.b[row]).squaredNorm();
+            right += A.b[row].squaredNorm();
+        }
+        CHECK(residual < 1e-8 * right);
     }
 }
