@@ -52,13 +52,6 @@ void check_step(const Checking& check) {
 
 void check_clip(const Checking& check) {
     const Clip& clip = check.scene.clip;
-    if (check.places.sound("clip.size")) {
-        const auto [width, height] = clip.size;
-        if (width % 2 != 0 || height % 2 != 0)
-            check.report("clip.size", fmt::format("the odd video size {} × {}", width, height),
-                         fmt::format("both must be even, for example [{}, {}]", width + width % 2,
-                                     height + height % 2));
-    }
     if (!check.places.sound("clip.duration") || !check.places.sound("clip.fps")) return;
     if (clip.duration * clip.fps < 0.5) {
         check.report(

@@ -38,7 +38,7 @@ void describe(Fields& f, Scene& scene) {
 void describe(Fields& f, Clip& clip) {
     f.number({"duration", "s"}, clip.duration, {0, max_time, true, "s"});
     f.integer({"fps", "frames per second"}, clip.fps, 1, 1000);
-    f.integers({"size", "pixels, width and height, both even"}, clip.size, 16, 8192);
+    f.integers({"size", "pixels, width and height; both even where an mp4 is made"}, clip.size, 16, 8192);
 }
 
 void describe(Fields& f, Solver& solver) {
