@@ -35,12 +35,10 @@ void per_particle(benchmark::State& state, double particles) {
 
 void components(benchmark::State& state) {
     MeasuredProblem& problem = sheet(state.range(0));
-    const StepWorkspace& ws = problem.simulation().ws;
-    const Families families = families_of(problem.simulation().model, ws);
     std::vector<std::uint32_t> parent;
     Components out;
     for (auto _ : state)
-        find_components(problem.simulation().model.size(), {families, ws.stencils}, ws.constraints, parent,
+        find_components(problem.simulation().model.size(), problem.couplings(), problem.constraints(), parent,
                         out);
     per_particle(state, static_cast<double>(problem.simulation().model.size()));
 }

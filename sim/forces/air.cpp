@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/forces/air_law.hpp"
 #include "sim/scene/random.hpp"
 
 namespace unravel::sim {
@@ -72,18 +73,16 @@ void air_forces(const AirCells& air, const Wind& wind, double t, double h, std::
         // The lightest corner decides how much a cell bears: it takes a quarter of it from each of up to four
         // cells; of triangles a third from each of up to six.
         const double bound = (triangle ? 0.5 : 1.0) * std::min({mass[p], mass[q], mass[r], mass[s]}) / h;
-        const double half = 0.5 * wind.density * area;
-        const double drag = std::min(half * wind.drag * std::abs(along), bound);
-        const double lift = std::min(half * wind.lift * relative.norm(), bound);
-        force[c] = drag * along * n + lift * (relative - along * n);
+        const AirPush push = air_push(wind, area, along, relative.norm(), bound);
+        force[c] = push.drag * along * n + push.lift * (relative - along * n);
     });
 }
 
-void add_air(const AirCells& air, std::span<const Vec3> force, double h, std::span<Vec3> impulse) {
-    parallel_each(impulse.size(), [&](std::size_t p) {
+void add_air(const AirCells& air, std::span<const Vec3> of_cell, std::span<Vec3> force) {
+    parallel_each(force.size(), [&](std::size_t p) {
         for (std::uint32_t k = air.start[p]; k < air.start[p + 1]; ++k) {
             const std::uint32_t c = air.cells[k];
-            impulse[p] += (corner_count(air.corners[c]) == 3 ? h / 3 : 0.25 * h) * force[c];
+            force[p] += (corner_count(air.corners[c]) == 3 ? 1.0 / 3 : 0.25) * of_cell[c];
         }
     });
 }

@@ -39,7 +39,7 @@ Vec3 wind_velocity(const Wind& wind, double t);
 void air_forces(const AirCells& air, const Wind& wind, double t, double h, std::span<const double> mass,
                 std::span<const Vec3> x, std::span<const Vec3> v, std::span<Vec3> force);
 
-/// Adds each particle's quarter of its cells' forces, times h.
-void add_air(const AirCells& air, std::span<const Vec3> force, double h, std::span<Vec3> impulse);
+/// Adds each particle's share of its cells' forces, (cells) [N], to `force`, (particles).
+void add_air(const AirCells& air, std::span<const Vec3> of_cell, std::span<Vec3> force);
 
 }  // namespace unravel::sim

@@ -21,14 +21,15 @@ double arc_energy(double s) {
 
 double bend_force(double length, double rest, double stiffness, double slope) {
     if (length >= rest) return 0;
-    const double arc = 4.0 * stiffness / (rest * rest) * arc_force(length / rest);
-    return std::max(arc, slope * (length - rest));
+    const double arc = arc_push(4.0 * stiffness / (rest * rest), std::clamp(length / rest, 0.0, 1.0));
+    return std::max(arc, straight_push(slope, length, rest));
 }
 
 double bend_force_slope(double length, double rest, double stiffness, double slope) {
     if (length >= rest) return 0;
     const double scale = 4.0 * stiffness / (rest * rest);
-    if (scale * arc_force(length / rest) < slope * (length - rest)) return slope;
+    if (arc_push(scale, std::clamp(length / rest, 0.0, 1.0)) < straight_push(slope, length, rest))
+        return slope;
     // F'(s) = −dF/du
     const double u = 1.0 - std::clamp(length / rest, 0.0, 1.0);
     double value = 0;

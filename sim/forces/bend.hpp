@@ -56,11 +56,20 @@ inline constexpr std::array<double, 11> arc_coefficients{
 double arc_force(double s);
 
 /// The same for an s that is known to be in [0, 1].
-inline __attribute__((always_inline)) double arc_force_within(double s) {
+UNRAVEL_LAW double arc_force_within(double s) {
     const double u = 1.0 - s;
     double value = arc_coefficients.back();
     for (std::size_t k = arc_coefficients.size() - 1; k-- > 0;) value = value * u + arc_coefficients[k];
     return value;
+}
+
+/// The two pushes of which the weaker acts [N], ≤ 0: c_b (l − L), and `scale` F(l/L) with scale = 4 k_b/L²
+/// and l/L in [0, 1].
+UNRAVEL_LAW double straight_push(double slope, double length, double rest) {
+    return slope * (length - rest);
+}
+UNRAVEL_LAW double arc_push(double scale, double share) {
+    return scale * arc_force_within(share);
 }
 
 /// θ², for the arc's energy 2 k_b θ²/L: the integral of 2F from 1 to s, so that force and energy agree to

@@ -18,50 +18,33 @@ void extension_forces(const ExtensionSprings& springs, std::span<const double> m
     out.resize(springs.size());
     parallel_each(springs.size(), [&](std::size_t s) {
         const std::uint32_t i = springs.i[s], j = springs.j[s];
-        const double rest = springs.rest[s];
+        const double rest = springs.rest[s], reach = (1.0 - band) * rest;
         const double stiffness = springs.stiffness[s], damping = springs.damping[s];
-        const double lighter = std::min(mass[i], mass[j]);
-        const double threshold =
-            s < springs.stretch_count ? splitting.stretch_threshold : splitting.shear_threshold;
-        const bool is_explicit = kappa(h, 1.0 / lighter, stiffness, damping) <= threshold;
+        const bool bears = is_explicit(kappa_between(h, mass[i], mass[j], stiffness, damping),
+                                       splitting.threshold(s < springs.stretch_count));
         const Vec3 now = x[j] - x[i];
-        const bool looks_ahead = !is_explicit && !ahead.empty();
+        const bool looks_ahead = !bears && !ahead.empty();
         const Vec3 d = looks_ahead ? Vec3(ahead[j] - ahead[i]) : now;
         const double squared = d.squaredNorm();
-        const bool will_be_taut = !taut.empty() && taut[s] != 0;
-        const double reach = will_be_taut ? 0.0 : (1.0 - band) * rest;
         // What is taut now and slack ahead still resists: dropped, it would let the next step start
         // over-taut.
-        const bool out_of_reach =
-            squared <= reach * reach && !(looks_ahead && now.squaredNorm() > reach * reach);
-        if (out_of_reach || squared == 0) {
-            out.force[s].setZero();
-            out.state[s] = SpringState::inactive;
-            return;
-        }
-        const double length = std::sqrt(squared);
-        if (length <= rest && is_explicit) {
-            out.force[s].setZero();
-            out.state[s] = SpringState::inactive;
-            return;
-        }
+        const bool reached =
+            squared > reach * reach || (looks_ahead && now.squaredNorm() > reach * reach && squared > 0);
+        const bool joins = !taut.empty() && taut[s] != 0;
+        const double length = reached || joins ? std::sqrt(squared) : 0.0;
+        const SpringSplit split{bears, is_taut(length, rest), reached, joins, squared > 0};
+        out.state[s] = split.state();
+        out.force[s].setZero();
+        if (split.state() == SpringState::inactive) return;
         const Vec3 u = d / length;
+        out.direction[s] = u;
+        out.transverse[s] = split.taut ? transverse_stiffness(stiffness, rest / length) : 0.0;
+        if (!split.pulls()) return;
         // Damping acts along the spring at x: its Jacobian knows how it changes with velocity, not with the
         // spring's turning, so that taken elsewhere it would cost a second-order scheme its order.
         const Vec3 turned = looks_ahead && now.squaredNorm() > 0 ? Vec3(now.normalized()) : u;
-        const double slowed = damping * turned.dot(v[j] - v[i]);
-        out.direction[s] = u;
-        out.state[s] = is_explicit ? SpringState::explicit_ : SpringState::implicit;
-        if (length > rest) {
-            out.force[s] = stiffness * (length - rest) * u + slowed * turned;
-            out.transverse[s] = stiffness * (1.0 - rest / length);
-        } else if (will_be_taut) {
-            out.force[s] = stiffness * (length - rest) * u + slowed * turned;
-            out.transverse[s] = 0;
-        } else {
-            out.force[s].setZero();
-            out.transverse[s] = 0;
-        }
+        const SpringPull pull = spring_pull(stiffness, length - rest, damping, turned.dot(v[j] - v[i]));
+        out.force[s] = pull.elastic * u + pull.damped * turned;
     });
 }
 
@@ -73,7 +56,7 @@ bool mark_taut(const ExtensionSprings& springs, std::span<const Vec3> end, const
         for (std::size_t s = first; s < last; ++s) {
             if (taut[s] || (!forces.state.empty() && forces.state[s] != SpringState::inactive)) continue;
             const double rest = springs.rest[s];
-            if ((end[springs.j[s]] - end[springs.i[s]]).squaredNorm() <= rest * rest) continue;
+            if (!is_taut((end[springs.j[s]] - end[springs.i[s]]).squaredNorm(), rest * rest)) continue;
             taut[s] = found[chunk] = 1;
         }
     });

@@ -8,6 +8,7 @@
 
 #include "sim/forces/adjacency.hpp"
 #include "sim/forces/coefficients.hpp"
+#include "sim/forces/extension_law.hpp"
 #include "sim/scene/math.hpp"
 
 namespace unravel::sim {
@@ -31,10 +32,6 @@ struct ExtensionSprings {
         damping.push_back(k_d);
     }
 };
-
-/// What a spring does in a step. Inactive: slack, neither force nor Jacobian. Explicit: force only. Implicit:
-/// force and Jacobian, hence an edge of the component graph.
-enum class SpringState : std::uint8_t { inactive, explicit_, implicit };
 
 /// Forces of the extension springs at (x, v), and what their Jacobians are made of:
 ///   ∂f_i/∂x_j = (k_s − t) ûûᵀ + t I,  t = k_s (1 − L/l),    ∂f_i/∂v_j = k_d ûûᵀ,    ∂f_i/∂x_i = −∂f_i/∂x_j.
@@ -70,19 +67,7 @@ inline SpringLine line_of(const SpringFamily& family, std::uint32_t s) {
     const ExtensionSprings& springs = *family.springs;
     const Vec3 d = family.at[springs.j[s]] - family.at[springs.i[s]];
     const double length = d.norm(), rest = springs.rest[s];
-    return {d / length, length > rest ? springs.stiffness[s] * (1.0 - rest / length) : 0.0};
-}
-
-/// Which springs are implicit (paper Sec. 3.5): κ = (h/m)(k_s h + 2 k_d), Eq. (7), m the smaller mass. A
-/// spring is explicit where κ ≤ threshold; +∞ makes all explicit, a negative one all implicit.
-struct Splitting {
-    double stretch_threshold = 0.2;
-    double shear_threshold = 0.2;
-};
-
-/// κ of Eq. (7), dimensionless. inverse_mass is 1/m of the lighter end [1/kg].
-inline double kappa(double h, double inverse_mass, double stiffness, double damping) {
-    return h * inverse_mass * (stiffness * h + 2.0 * damping);
+    return {d / length, transverse_stiffness(springs.stiffness[s], rest / length)};
 }
 
 /// Evaluates all springs at (x, v) for a step of h seconds. `band` ≥ 0: a slack spring with l > (1 − band) L
@@ -101,11 +86,5 @@ void extension_forces(const ExtensionSprings& springs, std::span<const double> m
 /// empty, among all; keeps earlier marks. True if it marked any that was not.
 bool mark_taut(const ExtensionSprings& springs, std::span<const Vec3> end, const ExtensionForces& forces,
                std::vector<std::uint8_t>& taut);
-
-/// Energy of one spring [J].
-inline double extension_energy(double length, double rest, double stiffness) {
-    const double e = length - rest;
-    return e > 0 ? 0.5 * stiffness * e * e : 0.0;
-}
 
 }  // namespace unravel::sim

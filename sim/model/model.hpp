@@ -56,7 +56,7 @@ struct Neighbours {
 };
 
 /// Stitches that sew a mesh together: springs whose rest length shrinks to nothing, linearly until `closed`.
-/// They act in extension only, and stand beside the temporary springs of self-collision.
+/// They act in extension only.
 struct Stitches {
     std::vector<std::uint32_t> i, j;         ///< (stitches) particles, i < j
     std::vector<double> start;               ///< (stitches) distance at t = 0 [m]
@@ -64,6 +64,8 @@ struct Stitches {
     std::vector<double> closed;              ///< (stitches) s
     std::size_t size() const { return i.size(); }
 };
+
+struct ForceTerm;  // sim/terms/term.hpp
 
 /// Everything that does not change while the cloth moves: topology, rest shape, masses, springs, pins, and
 /// the effects that the scene calls for. Const once built.
@@ -81,9 +83,8 @@ struct ClothModel {
     std::optional<Wind> wind;                     ///< absent: no air at all
     std::optional<SelfCollision> self_collision;  ///< absent: none; what the scene leaves open is filled in
     Neighbours neighbours;                        ///< of particles of meshes; empty without self-collision
+    std::vector<const ForceTerm*> further_terms;  ///< forces besides those of scenes; not owned
     std::size_t size() const { return mass.size(); }
-    /// Whether there are springs besides the cloth's own: stitches, or those of self-collision.
-    bool has_temporary_springs() const { return self_collision.has_value() || stitches.size() > 0; }
 };
 
 /// The cells of all cloths, for the air.

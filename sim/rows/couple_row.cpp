@@ -39,8 +39,7 @@ UNRAVEL_VERSIONS double couple_row(const RowEnd& a, const RowEnd& b, double rest
             const double r = inverse_root(squared);
             const double ux = dx * r, uy = dy * r, uz = dz * r;
             const double on = (implicit[k] != 0) & (a.ours[i] + b.ours[i] > 0) ? 1.0 : 0.0;
-            const double slack = 1.0 - rest * r;
-            const double t = on * stiffness[i] * (slack > 0 ? slack : 0.0);
+            const double t = transverse_stiffness(on * stiffness[i], rest * r);
             const double along = on * stiffness[i] - t;
             const double scale = hh * along + h * on * damping[i];
             block[0][k] = static_cast<float>(hh * t);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "sim/forces/air_law.hpp"
 #include "sim/forces/bend.hpp"
 #include "sim/rows/row_strips.hpp"
 
@@ -24,11 +25,10 @@ UNRAVEL_VERSIONS void extension_row(const RowState& a, const RowState& b, double
             const std::size_t i = first + k;
             const double dx = bx[i] - ax[i], dy = by[i] - ay[i], dz = bz[i] - az[i];
             const double squared = std::max(dx * dx + dy * dy + dz * dz, least_square);
-            const double r = inverse_root(squared);
-            const double extension = squared * r - rest;
+            const double r = inverse_root(squared), length = squared * r;
             const double rate = (dx * (bu[i] - au[i]) + dy * (bv[i] - av[i]) + dz * (bw[i] - aw[i])) * r;
-            const double pull = (stiffness[i] * extension + damping[i] * rate) * r;
-            const double t = extension > 0 ? pull : 0.0;
+            const double pull = spring_pull(stiffness[i], length - rest, damping[i], rate).sum() * r;
+            const double t = is_taut(length, rest) ? pull : 0.0;
             force[0][k] = t * dx;
             force[1][k] = t * dy;
             force[2][k] = t * dz;
@@ -60,15 +60,14 @@ UNRAVEL_VERSIONS void split_row(const RowState& a, const RowState& b, double res
             const double squared = std::max(exact, least_square);
             const double r = inverse_root(squared);
             const double rate = (dx * (bu[i] - au[i]) + dy * (bv[i] - av[i]) + dz * (bw[i] - aw[i])) * r;
-            const double pull = (stiffness[i] * (squared * r - rest) + damping[i] * rate) * r;
-            const bool is_taut = exact > taut_squared, joins = will_be_taut[k] != 0;
-            const bool implicit = !(is_explicit[i] > 0);
-            const double t = is_taut | (joins & implicit & (exact > 0)) ? pull : 0.0;
-            const bool reached = (exact > reach_squared) | (joins & (exact > 0));
+            const double pull = spring_pull(stiffness[i], squared * r - rest, damping[i], rate).sum() * r;
+            const SpringSplit split{is_explicit[i] > 0, is_taut(exact, taut_squared), exact > reach_squared,
+                                    will_be_taut[k] != 0, exact > 0};
+            const double t = split.pulls() ? pull : 0.0;
             force[0][k] = t * dx;
             force[1][k] = t * dy;
             force[2][k] = t * dz;
-            kind[k] = implicit & reached ? 2 : (is_taut ? 1 : 0);
+            kind[k] = split.code();
         }
         if (state) {
             for (std::size_t k = 0; k < n; ++k) state[first + k] = static_cast<SpringState>(kind[k]);
@@ -88,7 +87,7 @@ UNRAVEL_VERSIONS void mark_row(const ConstRow& a, const ConstRow& b, double rest
         for (std::size_t k = 0; k < n; ++k) {
             const std::size_t i = first + k;
             const double dx = bx[i] - ax[i], dy = by[i] - ay[i], dz = bz[i] - az[i];
-            longer[k] = dx * dx + dy * dy + dz * dz > taut_squared;
+            longer[k] = is_taut(dx * dx + dy * dy + dz * dz, taut_squared);
         }
         for (std::size_t k = 0; k < n; ++k) taut[first + k] = static_cast<std::uint8_t>(longer[k]);
     }
@@ -111,7 +110,7 @@ UNRAVEL_VERSIONS void bend_row(const RowState& a, const RowState& b, double rest
             const double squared = std::max(dx * dx + dy * dy + dz * dz, least_square);
             const double r = inverse_root(squared);
             const double l = squared * r;
-            const double push = l < rest ? slope[i] * (l - rest) * r : 0.0;
+            const double push = l < rest ? straight_push(slope[i], l, rest) * r : 0.0;
             compressed |= l < rest;
             deep |= l < crossing[i];
             length[k] = l;
@@ -124,8 +123,8 @@ UNRAVEL_VERSIONS void bend_row(const RowState& a, const RowState& b, double rest
             // The arc's push stands to the straight one as their magnitudes.
             for (std::size_t k = 0; k < n; ++k) {
                 const std::size_t i = first + k;
-                const double l = length[k], straight = slope[i] * (l - rest);
-                const double curved = arc[i] * arc_force_within(l * inverse_rest);
+                const double l = length[k], straight = straight_push(slope[i], l, rest);
+                const double curved = arc_push(arc[i], l * inverse_rest);
                 const double share = l < crossing[i] ? curved / straight : 1.0;
                 force[0][k] *= share;
                 force[1][k] *= share;
@@ -162,10 +161,9 @@ UNRAVEL_VERSIONS void air_row(const RowState& a, const RowState& b, const double
             const double rw = ww - 0.25 * (aw[i] + bw[i] + bw[j] + aw[j]);
             const double along = (nx * ru + ny * rv + nz * rw) * r;
             const double lightest = std::min(std::min(mass_a[i], mass_a[j]), std::min(mass_b[i], mass_b[j]));
-            const double bound = lightest * inverse_h, half = 0.5 * wind.density * area;
-            const double drag = std::min(half * wind.drag * std::abs(along), bound);
-            const double lift = std::min(half * wind.lift * std::sqrt(ru * ru + rv * rv + rw * rw), bound);
-            const double normal = 0.25 * (drag - lift) * along * r, across = 0.25 * lift;
+            const AirPush push =
+                air_push(wind, area, along, std::sqrt(ru * ru + rv * rv + rw * rw), lightest * inverse_h);
+            const double normal = 0.25 * (push.drag - push.lift) * along * r, across = 0.25 * push.lift;
             force[0][k] = normal * nx + across * ru;
             force[1][k] = normal * ny + across * rv;
             force[2][k] = normal * nz + across * rw;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/mesh/mesh_solid.hpp"
+#include "sim/step/trace.hpp"
 
 namespace unravel::sim {
 
@@ -53,7 +54,7 @@ std::vector<std::uint32_t> worst_particles(std::size_t n, double low, const F& f
 }
 
 double strain_of(const ClothModel& model, const std::vector<Vec3>& x, std::uint32_t s) {
-    return (x[model.springs.j[s]] - x[model.springs.i[s]]).norm() / model.springs.rest[s] - 1.0;
+    return spring_strain((x[model.springs.j[s]] - x[model.springs.i[s]]).norm(), model.springs.rest[s]);
 }
 
 std::string particle_name(const ClothModel& model, std::uint32_t p) {
@@ -67,12 +68,6 @@ std::string particle_name(const ClothModel& model, std::uint32_t p) {
     const std::string where =
         fmt::format("particle {} (u {}, v {}", p, (p - patch.first) % nu, (p - patch.first) / nu);
     return where + (model.cloths.size() > 1 ? fmt::format(" of cloth {})", c) : std::string(")"));
-}
-
-double height_energy(const ClothModel& model, const std::vector<Vec3>& x) {
-    double energy = 0;
-    for (std::size_t p = 0; p < model.size(); ++p) energy -= model.mass[p] * model.gravity.dot(x[p]);
-    return energy;
 }
 
 struct Judgement {
@@ -137,20 +132,21 @@ struct Judgement {
                          failure.value, limit, particle_name(model, failure.particles.front())));
     }
 
-    void judge_solution(const StepReport& report, const StepWorkspace& ws, double limit) {
+    void judge_solution(const StepReport& report, const StepTrace& trace, double limit) {
         if (report.converged) return;
-        for (std::size_t c = 0; c < ws.solves.size(); ++c) {
-            if (ws.solves[c].converged || ws.solves[c].residual <= limit) continue;
-            failure.value = ws.solves[c].residual;
+        for (std::size_t c = 0; c < trace.solves.size(); ++c) {
+            const ComponentSolve& solve = trace.solves[c];
+            if (solve.converged || solve.residual <= limit) continue;
+            failure.value = solve.residual;
             failure.limit = limit;
             const auto label = static_cast<std::int32_t>(c);
             failure.particles = worst_particles(model.size(), -1.0, [&](std::uint32_t p) {
-                return ws.components.label[p] == label ? ws.dv[p].norm() : -1.0;
+                return trace.components.label[p] == label ? trace.dv[p].norm() : -1.0;
             });
             stop(Criterion::unsolved,
                  fmt::format("conjugate gradients left a residual of {:.3g} (at most {:.3g}) after {} "
                              "iterations in the component of {} particles around {}",
-                             failure.value, limit, ws.solves[c].iterations, ws.components.size(c),
+                             failure.value, limit, solve.iterations, trace.components.size(c),
                              particle_name(model, failure.particles.front())));
         }
     }
@@ -165,9 +161,8 @@ const char* criterion_name(Criterion criterion) {
 
 bool takes_energy(const ClothModel& model) {
     const auto moves = [](const auto& thing) { return !thing.motion.empty(); };
-    const bool blows = model.wind && (!model.wind->velocity.isZero() || !model.wind->keyframes.empty());
     const auto deforms = [](const Solid& solid) { return solid.geometry && solid.geometry->deforms(); };
-    return blows || model.stitches.size() > 0 || std::any_of(model.pins.begin(), model.pins.end(), moves) ||
+    return forces_feed(model) || std::any_of(model.pins.begin(), model.pins.end(), moves) ||
            std::any_of(model.solids.begin(), model.solids.end(), moves) ||
            std::any_of(model.solids.begin(), model.solids.end(), deforms);
 }
@@ -176,9 +171,9 @@ Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
     Guard guard;
     StepReport report;
     MeasureWorkspace scratch;
-    BendLimit bend;
-    limit_bend(model.bends, model.mass, h, bend);
-    measure(model, bend, start, scratch, report);
+    ForceMemory forces;
+    prepare_terms(model, h, forces);
+    measure(model, forces, start, scratch, report);
     guard.strain += std::max(report.max_strain, 0.0);
     if (takes_energy(model)) return guard;
     double weight = 0, size = 0;
@@ -188,7 +183,7 @@ Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
     const double spent = report.kinetic + springs + weight * size;
     guard.energy = height + 2.0 * spent;
     guard.total = report.kinetic + report.potential;
-    if (!model.has_temporary_springs()) guard.rounding = rounding_share * spent;
+    if (!forces_hide_energy(model)) guard.rounding = rounding_share * spent;
     return guard;
 }
 
@@ -228,7 +223,7 @@ StepReport guarded_step(const ClothModel& model, const StepOptions& options, dou
     StepReport report = step(model, options, h, state, ws);
     if (!options.measure) return report;
     const bool grew = total_energy(report) > guard.total + guard.rounding;
-    if (grew && ws.coupled && std::isfinite(total_energy(report)))
+    if (grew && ws.linear.coupled && std::isfinite(total_energy(report)))
         report = take_again(model, options, h, guard.total, report, state, ws);
     Judgement judgement{model, options, state, h, {}};
     judgement.failure.step = report.step;
@@ -238,7 +233,7 @@ StepReport guarded_step(const ClothModel& model, const StepOptions& options, dou
         judgement.judge_finite(report);
         judgement.judge_strain(report, guard.strain);
         judgement.judge_energy(report, guard.energy);
-        judgement.judge_solution(report, ws, guard.residual);
+        judgement.judge_solution(report, trace_of(model, ws), guard.residual);
     } catch (const SimulationError&) {
         std::swap(state, ws.before);
         throw;

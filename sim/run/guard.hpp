@@ -24,7 +24,7 @@ struct Guard {
 /// for that one step. `h` [s] is the step that the springs' energy is measured for.
 Guard make_guard(const ClothModel& model, const ClothState& start, double h);
 
-/// True where a scene puts energy in while it runs: moving pins or solids, wind. Still air only takes.
+/// True where a scene puts energy in while it runs: moving pins or solids, or a force that does.
 bool takes_energy(const ClothModel& model);
 
 /// step(), taken back where its outcome breaks the guard. On SimulationError the state is what it was before.
@@ -33,8 +33,8 @@ bool takes_energy(const ClothModel& model);
 /// at its end than the linear model has them, and energy has come from nowhere. A step after which there is
 /// more of it than before, though nothing puts any in, is therefore taken again, linearised until its end is
 /// met (Eq. 4): the springs' energy is convex in x, so that backward Euler then only loses. The report counts
-/// both attempts' work, and the first as rejected. Not where cloth collides with itself: the temporary
-/// springs hold energy that is not measured.
+/// both attempts' work, and the first as rejected. Not where a
+/// force holds energy that is not measured, as the temporary springs of self-collision do.
 StepReport guarded_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                         StepWorkspace& ws, Guard& guard);
 

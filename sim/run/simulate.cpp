@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/run/adaptive_step.hpp"
+#include "sim/step/trace.hpp"
 
 namespace unravel::sim {
 
@@ -20,6 +21,7 @@ Simulation start_simulation(const Scene& scene) {
     simulation.steps_per_frame = steps_per_frame(scene);
     simulation.state = initial_state(placement);
     simulation.adaptive = scene.solver.adaptive;
+    plan_step(simulation.model, simulation.options, scene.solver.step, simulation.ws);
     simulation.guard = make_guard(simulation.model, simulation.state, scene.solver.step);
     return simulation;
 }
@@ -37,10 +39,11 @@ FrameRecord present_record(const Simulation& simulation) {
     record.frame = simulation.frame;
     record.state = simulation.state;
     record.free.assign(n, 3);
-    for (const Constraint& c : simulation.ws.constraints.all()) record.free[c.particle] = c.free;
-    record.component = simulation.ws.components.label;
-    record.springs = simulation.ws.extension.state;
-    record.solves = simulation.ws.solves;
+    const StepTrace trace = trace_of(simulation.model, simulation.ws);
+    for (const Constraint& c : trace.constraints.all()) record.free[c.particle] = c.free;
+    record.component = trace.components.label;
+    record.springs.assign(trace.springs.begin(), trace.springs.end());
+    record.solves = trace.solves;
     // Before the first step nothing is decomposed yet.
     record.component.resize(n, 0);
     record.springs.resize(simulation.model.springs.size(), SpringState::inactive);

@@ -122,59 +122,15 @@ bool are_neighbours(const ClothModel& model, std::uint32_t p, std::uint32_t q) {
     return false;
 }
 
-namespace {
-
-// Seams come first: damped springs that shrink to nothing, and pull only.
-void pull_stitches(const Stitches& stitches, std::span<const double> mass, std::span<const Vec3> x,
-                   std::span<const Vec3> v, double t, double h, double threshold,
-                   SelfCollisionWorkspace& ws) {
-    ExtensionSprings& springs = ws.springs;
-    springs.i.assign(stitches.i.begin(), stitches.i.end());
-    springs.j.assign(stitches.j.begin(), stitches.j.end());
-    springs.stiffness.own().assign(stitches.stiffness.begin(), stitches.stiffness.end());
-    springs.damping.own().assign(stitches.damping.begin(), stitches.damping.end());
-    std::vector<double>& rests = springs.rest.own();
-    rests.resize(stitches.size());
-    ws.forces.resize(stitches.size());
-    for (std::size_t s = 0; s < stitches.size(); ++s) {
-        const double left = stitches.closed[s] > 0 ? std::max(1.0 - t / stitches.closed[s], 0.0) : 0.0;
-        const double rest = rests[s] = left * stitches.start[s];
-        const std::uint32_t i = springs.i[s], j = springs.j[s];
-        const Vec3 d = x[j] - x[i];
-        const double length = d.norm(), k = stitches.stiffness[s], damping = stitches.damping[s];
-        if (length <= rest) {
-            ws.forces.force[s].setZero();
-            ws.forces.state[s] = SpringState::inactive;
-            continue;
-        }
-        const Vec3 u = d / length;
-        ws.forces.force[s] = (k * (length - rest) + damping * u.dot(v[j] - v[i])) * u;
-        ws.forces.direction[s] = u;
-        ws.forces.transverse[s] = k * (1 - rest / length);
-        const bool is_explicit = kappa(h, 1.0 / std::min(mass[i], mass[j]), k, damping) <= threshold;
-        ws.forces.state[s] = is_explicit ? SpringState::explicit_ : SpringState::implicit;
-    }
-}
-
-}  // namespace
-
-void temporary_springs(const ClothModel& model, double t, std::span<const Vec3> x, std::span<const Vec3> v,
-                       double h, double threshold, SelfCollisionWorkspace& ws) {
-    pull_stitches(model.stitches, model.mass, x, v, t, h, threshold, ws);
-    if (model.self_collision) self_collide(model, x, v, h, threshold, ws);
-    ws.adjacency = adjacency_of(x.size(), ws.springs.i, ws.springs.j);
-}
-
 void self_collide(const ClothModel& model, std::span<const Vec3> x, std::span<const Vec3> v, double h,
                   double threshold, SelfCollisionWorkspace& ws) {
     const SelfCollision& settings = *model.self_collision;
-    const std::size_t first = model.stitches.size();
     const double radius = search_share * settings.thickness;
     if (moved_too_far(x, ws.x_searched, 0.5 * (radius - settings.thickness))) search(model, x, radius, ws);
 
     ExtensionSprings& springs = ws.springs;
-    springs.i.resize(first);
-    springs.j.resize(first);
+    springs.i.clear();
+    springs.j.clear();
     ws.least_distance = settings.thickness;
     for (std::size_t k = 0; k < ws.candidate_i.size(); ++k) {
         const double distance = (x[ws.candidate_j[k]] - x[ws.candidate_i[k]]).norm();
@@ -183,16 +139,12 @@ void self_collide(const ClothModel& model, std::span<const Vec3> x, std::span<co
         springs.i.push_back(ws.candidate_i[k]);
         springs.j.push_back(ws.candidate_j[k]);
     }
-    const auto fill = [&](Coefficients& values, double value) {
-        values.own().resize(first);
-        values.own().resize(springs.size(), value);
-    };
+    const auto fill = [&](Coefficients& values, double value) { values.own().assign(springs.size(), value); };
     fill(springs.rest, settings.thickness);
     fill(springs.stiffness, settings.stiffness);
     fill(springs.damping, settings.damping);
     ws.forces.resize(springs.size());
-    parallel_each(springs.size() - first, [&](std::size_t k) {
-        const std::size_t s = first + k;
+    parallel_each(springs.size(), [&](std::size_t s) {
         const std::uint32_t i = springs.i[s], j = springs.j[s];
         const Vec3 d = x[j] - x[i];
         const double length = d.norm();
@@ -200,14 +152,16 @@ void self_collide(const ClothModel& model, std::span<const Vec3> x, std::span<co
         const Vec3 u = length > 0 ? Vec3(d / length) : Vec3::UnitY();
         // Damping may add to the push and take from it, but contact never pulls.
         const double push =
-            settings.stiffness * (length - settings.thickness) + settings.damping * u.dot(v[j] - v[i]);
-        const double lighter = std::min(model.mass[i], model.mass[j]);
-        const bool is_explicit = kappa(h, 1.0 / lighter, settings.stiffness, settings.damping) <= threshold;
+            spring_pull(settings.stiffness, length - settings.thickness, settings.damping, u.dot(v[j] - v[i]))
+                .sum();
+        const bool bears = is_explicit(
+            kappa_between(h, model.mass[i], model.mass[j], settings.stiffness, settings.damping), threshold);
         ws.forces.force[s] = std::min(push, 0.0) * u;
         ws.forces.direction[s] = u;
         ws.forces.transverse[s] = 0;
-        ws.forces.state[s] = is_explicit ? SpringState::explicit_ : SpringState::implicit;
+        ws.forces.state[s] = bears ? SpringState::explicit_ : SpringState::implicit;
     });
+    ws.adjacency = adjacency_of(x.size(), springs.i, springs.j);
 }
 
 }  // namespace unravel::sim

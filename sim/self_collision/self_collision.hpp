@@ -27,13 +27,7 @@ struct SelfCollisionWorkspace {
     std::vector<std::vector<std::uint32_t>> found;  ///< (chunks of particles) i, j, i, j, …
 };
 
-/// The springs that are not the cloth's own, at (x, v): first the model's stitches as they are at time t,
-/// then, where the scene calls for self-collision, its pairs. Split by κ ≤ threshold. Memory is kept between
-/// steps.
-void temporary_springs(const ClothModel& model, double t, std::span<const Vec3> x, std::span<const Vec3> v,
-                       double h, double threshold, SelfCollisionWorkspace& ws);
-
-/// Appends the step's pairs and their forces to the stitches' springs; `ws.adjacency` is left as it is.
+/// Finds the step's pairs at (x, v), split by κ ≤ threshold. Memory is kept between steps.
 void self_collide(const ClothModel& model, std::span<const Vec3> x, std::span<const Vec3> v, double h,
                   double threshold, SelfCollisionWorkspace& ws);
 

@@ -3,19 +3,18 @@
 #include <algorithm>
 
 #include "sim/step/cost_constants.hpp"
+#include "sim/sweep/explicit_sweep.hpp"
 
 namespace unravel::sim {
 
 IntegratorCosts count_costs(const ClothModel& model, const StepOptions& options, double h,
-                            StepWorkspace& ws) {
+                            PlanMemory& memory) {
     StepOptions dividing = options;
     dividing.integrator = Integrator::explicit_;
     dividing.substeps = 0;
     IntegratorCosts costs;
-    costs.substeps = substeps_of(model, dividing, h, ws);
-    const double part = h / costs.substeps;
-    limit_bend(model.bends, model.mass, part, ws.bend_limit);
-    costs.swept = options.sweep && ws.sweep.prepare(model, ws.bend_limit, part);
+    costs.substeps = substeps_of(model, dividing, h, memory);
+    costs.swept = options.sweep && why_not_swept(model).empty();
     const bool touches = !model.solids.empty();
     const double substep =
         !costs.swept ? cost::turned_substep : cost::swept_substep + (touches ? cost::swept_contact : 0.0);
@@ -24,18 +23,6 @@ IntegratorCosts count_costs(const ClothModel& model, const StepOptions& options,
     costs.coupled_cost =
         cost::coupled_step + (touches ? cost::coupled_contact : 0.0) + iterations * cost::coupled_iteration;
     return costs;
-}
-
-StepOptions choose_integrator(const ClothModel& model, const StepOptions& options, double h,
-                              StepWorkspace& ws) {
-    if (ws.chosen_for != h) {
-        ws.chosen = count_costs(model, options, h, ws).cheaper();
-        ws.chosen_for = h;
-    }
-    StepOptions chosen = options;
-    chosen.integrator = ws.chosen;
-    chosen.substeps = 0;
-    return chosen;
 }
 
 }  // namespace unravel::sim

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "sim/step/step.hpp"
+#include "sim/step/plan.hpp"
 
 namespace unravel::sim {
 
@@ -18,10 +18,7 @@ struct IntegratorCosts {
 /// Counts both from the number of stable substeps (Eq. 7 in the form of sim/step/explicit_limit.hpp), of
 /// which the solver's iterations are a multiple, and the costs of sim/step/cost_constants.hpp. It reads no
 /// clock and nothing of the state: the same model and step make the same choice in every run, resumed or not.
-IntegratorCosts count_costs(const ClothModel& model, const StepOptions& options, double h, StepWorkspace& ws);
-
-/// The options of `integrator = "auto"` with its choice in place of it.
-StepOptions choose_integrator(const ClothModel& model, const StepOptions& options, double h,
-                              StepWorkspace& ws);
+IntegratorCosts count_costs(const ClothModel& model, const StepOptions& options, double h,
+                            PlanMemory& memory);
 
 }  // namespace unravel::sim

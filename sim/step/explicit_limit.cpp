@@ -79,9 +79,8 @@ ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options
         for (std::uint32_t s = 0; s < model.springs.size(); ++s) {
             const std::uint32_t i = model.springs.i[s], j = model.springs.j[s];
             const double k = model.springs.stiffness[s], d = model.springs.damping[s];
-            const double of_spring = kappa(step, 1.0 / std::min(model.mass[i], model.mass[j]), k, d);
-            const bool stretch = s < model.springs.stretch_count;
-            if (of_spring > (stretch ? splitting.stretch_threshold : splitting.shear_threshold)) continue;
+            const double of_spring = kappa_between(step, model.mass[i], model.mass[j], k, d);
+            if (!is_explicit(of_spring, splitting.threshold(s < model.springs.stretch_count))) continue;
             const std::size_t c = patch_of(model, i);
             const bool grid = model.cloths[c].grid();
             const std::uint32_t first = model.cloths[c].first;

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "sim/model/model.hpp"
-#include "sim/step/step.hpp"
+#include "sim/step/plan.hpp"
 
 namespace unravel::sim {
 

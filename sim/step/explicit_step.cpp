@@ -1,17 +1,10 @@
 #include <algorithm>
-#include <cmath>
 
-#include "sim/step/explicit_limit.hpp"
 #include "sim/step/stage.hpp"
 
 namespace unravel::sim {
 
 namespace {
-
-// Share of the limit of stability that a substep chosen here may reach. The limit is that of the cloth laid
-// flat; air, bending and stretched cells take their part: a hanging sheet of 201 × 201 breaks at 0.9 and is
-// as with substeps half as long at 0.75.
-constexpr double limit_margin = 0.75;
 
 // Stretch and shear springs at x, as the explicit treatment has them.
 void classify(const ExtensionSprings& springs, std::span<const Vec3> x, std::vector<SpringState>& out,
@@ -19,13 +12,15 @@ void classify(const ExtensionSprings& springs, std::span<const Vec3> x, std::vec
     out.resize(springs.size());
     parallel_each(springs.size(), [&](std::size_t s) {
         const double rest = springs.rest[s];
-        const bool taut = (x[springs.j[s]] - x[springs.i[s]]).squaredNorm() > rest * rest;
-        out[s] = taut ? SpringState::explicit_ : SpringState::inactive;
+        const bool taut = is_taut((x[springs.j[s]] - x[springs.i[s]]).squaredNorm(), rest * rest);
+        out[s] = SpringSplit{true, taut, taut, false, true}.state();
     });
     const auto taut = std::count(out.begin(), out.end(), SpringState::explicit_);
     report.explicit_ = static_cast<std::uint32_t>(taut);
     report.inactive = static_cast<std::uint32_t>(out.size()) - report.explicit_;
 }
+
+}  // namespace
 
 StepReport swept_step(const ClothModel& model, const StepOptions& options, double h, int substeps,
                       ClothState& state, StepWorkspace& ws) {
@@ -33,25 +28,28 @@ StepReport swept_step(const ClothModel& model, const StepOptions& options, doubl
     StageTimer timer;
     report.step = state.step + 1;
     report.h = h;
-    ClothState& next = ws.before;
-    begin_next(state, h, next);
-    ws.sweep.run(model, state, substeps, next, ws.constraints, report.contacts);
-    require_finite(next.v, state, h);
-    parallel_each(model.size(), [&](std::size_t p) { next.dv[p] = next.v[p] - state.v[p]; });
+    prepare_terms(model, h / substeps, ws.forces.memory);
+    ws.sweep.prepare(model, ws.forces.memory, h / substeps);
+    std::swap(state, ws.before);
+    const ClothState& before = ws.before;
+    begin_next(before, h, state);
+    ws.sweep.run(model, before, substeps, state, ws.constraints, report.contacts);
+    try {
+        require_finite(state.v, before, h);
+    } catch (const SimulationError&) {
+        std::swap(state, ws.before);
+        throw;
+    }
+    parallel_each(model.size(), [&](std::size_t p) { state.dv[p] = state.v[p] - before.v[p]; });
     timer.lap(report.times.advance);
-    if (options.measure) classify(model.springs, state.x, ws.extension.state, report);
-    std::swap(state, next);
-
-    lone_particles(model.size(), ws.constraints, ws.components);
-    ws.solves.assign(ws.components.count(), {});
+    if (options.measure) classify(model.springs, before.x, ws.forces.memory.springs.state, report);
+    ws.linear.coupled = false;
+    lone_particles(model.size(), ws.constraints, ws.linear.components);
+    ws.linear.solves.assign(ws.linear.components.count(), {});
     timer.lap(report.times.graph);
     report.t = state.t;
     report.substeps = static_cast<std::uint32_t>(substeps);
-    report.components = static_cast<std::uint32_t>(ws.components.count());
-    report.largest = ws.components.largest();
-    for (const Constraint& c : ws.constraints.all()) ++(c.free == 0 ? report.constrained : report.partly);
-    if (options.measure) measure(model, ws.bend_limit, state, ws.measure, report);
-    timer.lap(report.times.measure);
+    finish_report(model, options, state, timer, ws, report);
     return report;
 }
 
@@ -81,27 +79,6 @@ StepReport substeps_in_turn(const ClothModel& model, const StepOptions& options,
     parallel_each(model.size(), [&](std::size_t p) { state.dv[p] = state.v[p] - start.v[p]; });
     ws.before = std::move(start);
     return report;
-}
-
-}  // namespace
-
-int substeps_of(const ClothModel& model, const StepOptions& options, double h, StepWorkspace& ws) {
-    if (options.substeps > 0) return options.substeps;
-    if (ws.explicit_step == 0) {
-        StepOptions whole = options;
-        whole.substeps = 1;
-        ws.explicit_step = explicit_limit(model, whole, h).step;
-    }
-    return std::max(1, static_cast<int>(std::ceil(h / (limit_margin * ws.explicit_step) - 1e-9)));
-}
-
-StepReport explicit_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
-                         StepWorkspace& ws) {
-    const int substeps = substeps_of(model, options, h, ws);
-    limit_bend(model.bends, model.mass, h / substeps, ws.bend_limit);
-    if (options.sweep && ws.sweep.prepare(model, ws.bend_limit, h / substeps))
-        return swept_step(model, options, h, substeps, state, ws);
-    return substeps_in_turn(model, options, h, substeps, state, ws);
 }
 
 }  // namespace unravel::sim

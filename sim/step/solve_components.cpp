@@ -12,8 +12,6 @@ namespace unravel::sim {
 
 namespace {
 
-// Rows from which the grid's solver is the faster one.
-constexpr std::uint32_t least_rows = 256;
 // A component that covers less than this share of its rows of the grid wastes too much of every sweep.
 constexpr double least_share = 0.3;
 // Stiffest coupling over mass that single precision bears.
@@ -24,13 +22,6 @@ const GridSprings* grid_of(std::span<const GridSprings> grids, std::uint32_t par
         if (particle >= g.particle && particle < g.particle + g.count()) return &g;
     }
     return nullptr;
-}
-
-bool may_use_grids(const SolveOptions& options) {
-    return (options.preconditioner == Preconditioner::automatic ||
-            options.preconditioner == Preconditioner::stencil_block ||
-            options.preconditioner == Preconditioner::multigrid) &&
-           options.tolerance >= grid_cg_tolerance;
 }
 
 // Which components have what is in no grid's own springs: those between cloth that touches itself, stitches,
@@ -68,7 +59,7 @@ void plan_solves(const StepSystem& step, const SolveOptions& options, GridSolves
     mark_beyond_grids(step.couplings, components, ws.beyond);
     for (std::size_t c = 0; c < components.count(); ++c) {
         const std::uint32_t size = components.size(c);
-        if (size < least_rows || ws.beyond[c]) continue;
+        if (size < least_rows_on_grid || ws.beyond[c]) continue;
         const std::uint32_t first = components.order[components.start[c]],
                             last = components.order[components.start[c + 1] - 1];
         const GridSprings* g = grid_of(grids, first);
@@ -129,6 +120,13 @@ void make_aggregates_where_needed(const StepSystem& step, const SolveOptions& op
 }
 
 }  // namespace
+
+bool may_use_grids(const SolveOptions& options) {
+    return (options.preconditioner == Preconditioner::automatic ||
+            options.preconditioner == Preconditioner::stencil_block ||
+            options.preconditioner == Preconditioner::multigrid) &&
+           options.tolerance >= grid_cg_tolerance;
+}
 
 void assemble_components(const StepSystem& step, const SolveOptions& options, GridSolves& grids,
                          System& rows) {

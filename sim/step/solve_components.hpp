@@ -12,6 +12,11 @@
 
 namespace unravel::sim {
 
+/// Rows from which the grid's solver is the faster one.
+inline constexpr std::uint32_t least_rows_on_grid = 256;
+/// Whether the options leave components to the grid's solver.
+bool may_use_grids(const SolveOptions& options);
+
 /// What solves each component of a step: rows in double (sim/linear/solve.hpp), or, for a large one that lies
 /// on a grid and has no springs but the grid's and no stencils, the grid's own solver in single precision
 /// (sim/kernels/grid_cg.hpp). Chosen from the system alone,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <ranges>
 
 namespace unravel::sim {
 
@@ -12,31 +13,32 @@ constexpr int newton_limit = 30;
 // Halvings of a Newton step that would increase the residual.
 constexpr int newton_halvings = 4;
 
-// Right-hand side of the stage: friction, M (ṽ − v*) and h_f f*, gathered per particle in a fixed order.
-// Forces that were gathered along rows are in `impulse` already.
+// Forces at (x*, v*), and the right-hand side of the stage: friction, M (ṽ − v*) and h_f f*. Gathered per
+// particle in the order of the terms.
 void add_forces(const ClothModel& model, StepWorkspace& ws) {
+    ForceStage& forces = ws.forces;
+    const ForcePlan& plan = ws.plan.forces;
+    forces.sum.resize(model.size());
+    if (plan.by_rows) {
+        forces.rows.gather(model, forces.taut, forces.sum, forces.memory.springs.state);
+        if (!forces.pushes.empty())
+            parallel_each(model.size(), [&](std::size_t p) { forces.sum[p] += forces.pushes[p]; });
+    } else if (!forces.pushes.empty()) {
+        forces.sum = forces.pushes;
+    } else {
+        forces.sum.assign(model.size(), Vec3::Zero());
+    }
+    for (const ForcePlan::Term& planned : plan.terms) {
+        if (planned.term->add && !planned.by_rows) planned.term->add(model, forces.memory, forces.sum);
+    }
     const Stage& stage = ws.stage;
-    const bool rubbed = !ws.friction.empty();
-    ws.impulse.resize(model.size());
+    const bool rubbed = !ws.contact.friction.empty();
+    ws.linear.impulse.resize(model.size());
     parallel_each(model.size(), [&](std::size_t p) {
-        Vec3 f = model.mass[p] * model.gravity;
-        if (ws.rowwise) f += ws.impulse[p];
-        const auto gather = [&](const Adjacency& adjacency, const std::vector<Vec3>& force) {
-            adjacency.each(static_cast<std::uint32_t>(p), [&](std::uint32_t s, std::uint32_t other) {
-                f += other > p ? force[s] : Vec3(-force[s]);
-            });
-        };
-        if (!ws.rowwise) gather(model.spring_adjacency, ws.extension.force);
-        if (ws.bend_is_implicit) {
-            gather(ws.bend_adjacency, ws.implicit_bend.forces.force);
-        } else if (!ws.rowwise) {
-            gather(ws.bend_adjacency, ws.bend);
-        }
-        if (model.has_temporary_springs()) gather(ws.self.adjacency, ws.self.forces.force);
-        const Vec3 friction = rubbed ? ws.friction[p] : Vec3(Vec3::Zero());
-        ws.impulse[p] = friction + stage.h_force * f + model.mass[p] * (stage.v[p] - stage.v_at[p]);
+        const Vec3 friction = rubbed ? ws.contact.friction[p] : Vec3(Vec3::Zero());
+        ws.linear.impulse[p] =
+            friction + stage.h_force * forces.sum[p] + model.mass[p] * (stage.v[p] - stage.v_at[p]);
     });
-    if (model.wind && !ws.rowwise) add_air(ws.air_cells, ws.air, stage.h_force, ws.impulse);
 }
 
 void count_solves(const std::vector<ComponentSolve>& solves, StepReport& report) {
@@ -49,52 +51,57 @@ void count_solves(const std::vector<ComponentSolve>& solves, StepReport& report)
 }
 
 // The oracle: the very same system, undecomposed.
-void compare_whole(const ClothModel& model, const StepOptions& options, const Couplings& couplings,
+void compare_whole(const ClothModel& model, const StepOptions& options, const StepCouplings& couplings,
                    const Load& load, std::span<const Vec3> guess, StepWorkspace& ws, StepReport& report) {
     report.rvm_whole = report.rvm_whole.value_or(0);
-    if (!ws.coupled) return;
-    whole_cloth(model.size(), ws.whole);
-    const StepSystem system{model.grids,    couplings, load,       ws.whole,
+    if (!ws.linear.coupled) return;
+    WholeStage& whole = ws.whole;
+    whole_cloth(model.size(), whole.components);
+    const StepSystem system{model.grids,    couplings, load,       whole.components,
                             ws.constraints, guess,     ws.stage.h, &model.stitches};
-    assemble_components(system, options.solve, ws.whole_grid_solves, ws.whole_system);
-    solve_components(system, options.solve, ws.whole_grid_solves, ws.whole_system, ws.whole_solve,
-                     ws.whole_solves);
-    for (const ComponentSolve& s : ws.whole_solves) *report.rvm_whole += s.rvm;
+    assemble_components(system, options.solve, whole.grids, whole.system);
+    solve_components(system, options.solve, whole.grids, whole.system, whole.solve, whole.solves);
+    for (const ComponentSolve& s : whole.solves) *report.rvm_whole += s.rvm;
     for (std::size_t p = 0; p < model.size(); ++p) {
-        report.whole_difference = std::max(report.whole_difference, (ws.whole_solve.x[p] - ws.dv[p]).norm());
+        report.whole_difference =
+            std::max(report.whole_difference, (whole.solve.x[p] - ws.linear.dv[p]).norm());
     }
 }
 
 // With nothing implicit A is M: nothing is coupled, nothing assembled, nothing iterated.
 void solve_uncoupled(const ClothModel& model, StepWorkspace& ws) {
-    lone_particles(model.size(), ws.constraints, ws.components);
-    ws.solves.assign(ws.components.count(), {});
+    LinearStage& linear = ws.linear;
+    lone_particles(model.size(), ws.constraints, linear.components);
+    linear.solves.assign(linear.components.count(), {});
     parallel_each(model.size(), [&](std::size_t p) {
         const Constraint* c = ws.constraints.find(static_cast<std::uint32_t>(p));
-        const Vec3 dv = ws.impulse[p] / model.mass[p];
-        ws.dv[p] = c ? Vec3(c->S * dv + (c->z - c->S * c->z)) : dv;
+        const Vec3 dv = linear.impulse[p] / model.mass[p];
+        linear.dv[p] = c ? Vec3(c->S * dv + (c->z - c->S * c->z)) : dv;
     });
 }
 
-// Where the particles will be if the step goes on like the last one, or as solved: x̃ + h̃ (v* + Δv). Lies
-// where linearise() will put the drift.
+// Where the particles will be if the step goes on like the last one, or as solved: x̃ + h̃ (v* + Δv).
 std::span<const Vec3> predict(std::span<const Vec3> dv, StepWorkspace& ws) {
-    ws.drift.resize(dv.size());
-    parallel_each(dv.size(),
-                  [&](std::size_t p) { ws.drift[p] = ws.base[p] + ws.stage.h * (ws.stage.v_at[p] + dv[p]); });
-    return ws.drift;
+    const std::span<const Vec3> base = ws.base();
+    ws.linear.predicted.resize(dv.size());
+    parallel_each(dv.size(), [&](std::size_t p) {
+        ws.linear.predicted[p] = base[p] + ws.stage.h * (ws.stage.v_at[p] + dv[p]);
+    });
+    return ws.linear.predicted;
 }
 
 // Where implicit springs are linearised if not at x*: where the scheme says; or, looking ahead, where the
 // step would end if nothing but the constraints changed v*.
 void place_linearisation(const ClothModel& model, const StepOptions& options, StepWorkspace& ws) {
-    ws.ahead = ws.stage.x_linear;
+    std::vector<Vec3>& ahead = ws.forces.ahead;
+    ahead = ws.stage.x_linear;
     if (options.activation != Activation::ahead || scheme_of(options.integrator).multistep) return;
-    ws.ahead.resize(model.size());
+    const std::span<const Vec3> base = ws.base();
+    ahead.resize(model.size());
     parallel_each(model.size(), [&](std::size_t p) {
         const Constraint* c = ws.constraints.find(static_cast<std::uint32_t>(p));
         const Vec3 v = c ? Vec3(ws.stage.v_at[p] + c->z - c->S * c->z) : ws.stage.v_at[p];
-        ws.ahead[p] = ws.base[p] + ws.stage.h * v;
+        ahead[p] = base[p] + ws.stage.h * v;
     });
 }
 
@@ -103,7 +110,8 @@ double residual_of(const ClothModel& model, const StepWorkspace& ws) {
     double sum = 0;
     for (std::uint32_t p = 0; p < model.size(); ++p) {
         const Constraint* c = ws.constraints.find(p);
-        sum += (c ? Vec3(c->S * ws.impulse[p]) : ws.impulse[p]).squaredNorm() / model.mass[p];
+        const Vec3& y = ws.linear.impulse[p];
+        sum += (c ? Vec3(c->S * y) : y).squaredNorm() / model.mass[p];
     }
     return sum;
 }
@@ -118,115 +126,116 @@ double kinetic_of(std::span<const double> mass, std::span<const Vec3> y) {
 // J, mechanical, where the step would end if it ended at (x*, v*).
 double energy_at_end(const ClothModel& model, StepWorkspace& ws) {
     StepReport end;
-    measure(model, ws.bend_limit, ws.stage.x_at, ws.stage.v_at, ws.measure, end);
+    measure(model, ws.forces.memory, ws.stage.x_at, ws.stage.v_at, ws.measure, end);
     return end.kinetic + end.potential;
 }
 
 }  // namespace
 
-Families families_of(const ClothModel& model, const StepWorkspace& ws) {
-    Families families;
-    const auto add = [&](const SpringFamily& family) { families.list[families.count++] = family; };
-    const std::span<const Vec3> at = ws.ahead.empty() ? ws.stage.x_at : ws.ahead;
-    add({&model.springs, &model.spring_adjacency, &ws.extension, {}, at});
-    if (model.has_temporary_springs())
-        add({&ws.self.springs, &ws.self.adjacency, &ws.self.forces, ws.drift_from_start});
-    if (ws.bend_is_implicit) add({&ws.implicit_bend.springs, &ws.bend_adjacency, &ws.implicit_bend.forces});
-    return families;
+ForcesAt forces_at(const StepWorkspace& ws) {
+    return {ws.plan.forces.settings, ws.forces.t,     ws.forces.t_end, ws.stage.x_at,
+            ws.stage.v_at,           ws.forces.ahead, ws.forces.taut,  ws.linear.drift_from_start};
 }
 
-void explicit_forces(const ClothModel& model, const StepOptions& options, double t, double h,
-                     StageTimer& timer, StepWorkspace& ws, StepReport& report) {
-    const Stage& stage = ws.stage;
-    const Scheme& scheme = scheme_of(options.integrator);
-    limit_bend(model.bends, model.mass, h, ws.bend_limit);
-    ws.bend_is_implicit =
-        scheme.implicit_bend && options.bend == BendTreatment::scheme && model.bends.size() > 0;
-    const bool at_start =
-        stage.x_linear.empty() && (options.activation != Activation::ahead || scheme.multistep);
-    ws.rowwise = options.sweep && at_start &&
-                 ws.rows.prepare(model, ws.bend_limit,
-                                 {h, scheme.splitting(options.threshold), options.activation_band});
-    if (ws.rowwise) {
-        ws.rows.place(stage.x_at, stage.v_at);
-        ws.rows.bend(!ws.bend_is_implicit);
+StepCouplings couplings_of(const ClothModel& model, const StepWorkspace& ws) {
+    StepCouplings couplings;
+    const ForcesAt at = forces_at(ws);
+    for (const ForcePlan::Term& planned : ws.plan.forces.terms) {
+        if (planned.implicit) planned.term->couple(model, at, ws.forces.memory, couplings);
     }
-    const bool by_spring = ws.bend_is_implicit || !ws.rowwise;
-    if (by_spring && ws.bend_adjacency.start.size() != model.size() + 1)
-        ws.bend_adjacency = adjacency_of(model.size(), model.bends.i, model.bends.j);
-    if (!ws.rowwise && !ws.bend_is_implicit) {
-        ws.bend.resize(model.bends.size());
-        bend_forces(model.bends, ws.bend_limit, stage.x_at, ws.bend);
-    }
-    timer.lap(report.times.forces);
-    if (!model.wind) return;
-    if (ws.rowwise) {
-        ws.rows.blow(model, t);
-    } else {
-        if (ws.air_cells.start.size() != model.size() + 1) ws.air_cells = air_cells(model);
-        ws.air.resize(ws.air_cells.corners.size());
-        air_forces(ws.air_cells, *model.wind, t, h, model.mass, stage.x_at, stage.v_at, ws.air);
-    }
-    timer.lap(report.times.air);
+    return couplings;
 }
 
-void linearise(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
-               StepWorkspace& ws, StepReport& report) {
-    const Stage& stage = ws.stage;
-    const Splitting splitting = scheme_of(options.integrator).splitting(options.threshold);
-    if (model.has_temporary_springs()) {
-        temporary_springs(model, ws.t_end, stage.x_at, stage.v_at, h, splitting.stretch_threshold, ws.self);
-        timer.lap(report.times.collision);
+void begin_forces(const ClothModel& model, const StepOptions& options, double t, double h, StageTimer& timer,
+                  StepWorkspace& ws, StepReport& report) {
+    ForceStage& forces = ws.forces;
+    const bool looks_ahead = !ws.stage.x_linear.empty() || (options.activation == Activation::ahead &&
+                                                            !scheme_of(options.integrator).multistep);
+    const PlanMemory::Key key = plan_key(model, options, h, looks_ahead);
+    if (ws.plan.forces_key != key) {
+        ws.plan.forces = plan_forces(model, options, h, looks_ahead);
+        ws.plan.forces_key = key;
     }
+    const ForcePlan& plan = ws.plan.forces;
+    prepare_terms(model, h, forces.memory);
+    forces.t = t;
+    forces.t_end = t + h;
+    forces.taut.clear();
+    forces.ahead.clear();
+    forces.pushes.clear();
+    if (plan.by_rows) {
+        forces.rows.prepare(model, forces.memory, plan.settings);
+        forces.rows.place(ws.stage.x_at, ws.stage.v_at);
+        forces.rows.begin();
+    }
+    const ForcesAt at = forces_at(ws);
+    for (const ForcePlan::Term& planned : plan.terms) {
+        const ForceTerm& term = *planned.term;
+        if (planned.implicit) continue;
+        if (planned.by_rows) {
+            if (term.rows) forces.rows.push(model, *term.rows, t);
+        } else if (term.push) {
+            if (forces.pushes.empty()) forces.pushes.assign(model.size(), Vec3::Zero());
+            term.push(model, at, forces.memory, forces.pushes);
+        } else {
+            term.evaluate(model, at, forces.memory);
+        }
+        timer.lap(report.times.*term.time);
+    }
+}
+
+void linearise(const ClothModel& model, const StepOptions& options, StageTimer& timer, StepWorkspace& ws,
+               StepReport& report) {
+    const Stage& stage = ws.stage;
+    LinearStage& linear = ws.linear;
     place_linearisation(model, options, ws);
-    if (ws.rowwise) {
-        ws.impulse.resize(model.size());
-        ws.rows.gather(model, ws.taut, ws.impulse, ws.extension.state);
-    } else {
-        extension_forces(model.springs, model.mass, stage.x_at, stage.v_at, h, splitting,
-                         options.activation_band, ws.extension, ws.taut, ws.ahead);
+    timer.lap(report.times.forces);
+    for (const ForcePlan::Term& planned : ws.plan.forces.terms) {
+        if (!planned.implicit || planned.by_rows) continue;
+        planned.term->evaluate(model, forces_at(ws), ws.forces.memory);
+        timer.lap(report.times.*planned.term->time);
     }
-    if (ws.bend_is_implicit)
-        bend_jacobians(model.bends, ws.bend_limit, ws.ahead.empty() ? stage.x_at : ws.ahead,
-                       ws.implicit_bend);
     add_forces(model, ws);
-    const std::span<const Vec3> at = ws.ahead.empty() ? stage.x_at : ws.ahead;
+    const std::span<const Vec3> base = ws.base();
     const auto drift_from = [&](std::span<const Vec3> from, std::vector<Vec3>& drift) {
         drift.resize(model.size());
         parallel_each(model.size(),
-                      [&](std::size_t p) { drift[p] = ws.base[p] + stage.h * stage.v_at[p] - from[p]; });
+                      [&](std::size_t p) { drift[p] = base[p] + stage.h * stage.v_at[p] - from[p]; });
     };
-    drift_from(at, ws.drift);
-    ws.drift_from_start.clear();
-    if (model.has_temporary_springs() && !ws.ahead.empty()) drift_from(stage.x_at, ws.drift_from_start);
+    drift_from(forces_at(ws).linearised_at(), linear.drift);
+    linear.drift_from_start.clear();
+    const auto implicit = [](const ForcePlan::Term& planned) { return planned.implicit; };
+    if (!ws.forces.ahead.empty() && std::ranges::count_if(ws.plan.forces.terms, implicit) > 1)
+        drift_from(stage.x_at, linear.drift_from_start);
     timer.lap(report.times.forces);
 }
 
 void solve_stage(const ClothModel& model, const StepOptions& options, std::span<const Vec3> guess,
                  StageTimer& timer, StepWorkspace& ws, StepReport& report) {
     const std::size_t n = model.size();
-    const Families families = families_of(model, ws);
-    const Couplings couplings{families, ws.stencils};
-    const Load load{model.mass, ws.impulse, ws.drift};
-    ws.dv.resize(n);
-    ws.coupled = any_implicit(couplings);
-    if (!ws.coupled) {
+    const StepCouplings couplings = couplings_of(model, ws);
+    LinearStage& linear = ws.linear;
+    const Load load{model.mass, linear.impulse, linear.drift};
+    linear.dv.resize(n);
+    linear.coupled = any_implicit(couplings);
+    if (!linear.coupled) {
         solve_uncoupled(model, ws);
         timer.lap(report.times.solve);
     } else {
         if (options.decompose) {
-            find_components(n, couplings, ws.constraints, ws.parent, ws.components);
+            find_components(n, couplings, ws.constraints, linear.parent, linear.components);
         } else {
-            whole_cloth(n, ws.components);
+            whole_cloth(n, linear.components);
         }
         timer.lap(report.times.graph);
-        const StepSystem system{model.grids,    couplings, load,       ws.components,
+        const StepSystem system{model.grids,    couplings, load,       linear.components,
                                 ws.constraints, guess,     ws.stage.h, &model.stitches};
-        assemble_components(system, options.solve, ws.grid_solves, ws.system);
+        assemble_components(system, options.solve, linear.grids, linear.system);
         timer.lap(report.times.assembly);
-        solve_components(system, options.solve, ws.grid_solves, ws.system, ws.solve, ws.solves);
-        parallel_each(n, [&](std::size_t row) { ws.dv[ws.components.order[row]] = ws.solve.x[row]; });
-        count_solves(ws.solves, report);
+        solve_components(system, options.solve, linear.grids, linear.system, linear.solve, linear.solves);
+        parallel_each(
+            n, [&](std::size_t row) { linear.dv[linear.components.order[row]] = linear.solve.x[row]; });
+        count_solves(linear.solves, report);
         timer.lap(report.times.solve);
     }
     if (!options.compare_whole) return;
@@ -236,42 +245,44 @@ void solve_stage(const ClothModel& model, const StepOptions& options, std::span<
 
 void predict_taut(const ClothModel& model, std::span<const Vec3> dv, StepWorkspace& ws) {
     const std::span<const Vec3> end = predict(dv, ws);
-    if (ws.rowwise) {
-        ws.rows.mark(model, end, ws.taut);
+    if (ws.plan.forces.by_rows) {
+        ws.forces.rows.mark(model, end, ws.forces.taut);
     } else {
-        mark_taut(model.springs, end, {}, ws.taut);
+        mark_taut(model.springs, end, {}, ws.forces.taut);
     }
 }
 
-void solve_again_where_taut(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
+void solve_again_where_taut(const ClothModel& model, const StepOptions& options, StageTimer& timer,
                             StepWorkspace& ws, StepReport& report) {
-    if (!mark_taut(model.springs, predict(ws.dv, ws), ws.extension, ws.taut)) return;
-    linearise(model, options, h, timer, ws, report);
-    ws.guess = ws.dv;
-    solve_stage(model, options, ws.guess, timer, ws, report);
+    const std::span<const Vec3> end = predict(ws.linear.dv, ws);
+    if (!mark_taut(model.springs, end, ws.forces.memory.springs, ws.forces.taut)) return;
+    linearise(model, options, timer, ws, report);
+    ws.linear.guess = ws.linear.dv;
+    solve_stage(model, options, ws.linear.guess, timer, ws, report);
 }
 
-void iterate(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
-             StepWorkspace& ws, StepReport& report) {
+void iterate(const ClothModel& model, const StepOptions& options, StageTimer& timer, StepWorkspace& ws,
+             StepReport& report) {
     Stage& stage = ws.stage;
+    LinearStage& linear = ws.linear;
     stage.x_linear.clear();
     stage.own_at();
     const auto advance = [&](double share) {
         parallel_each(model.size(), [&](std::size_t p) {
-            stage.own.v_at[p] += share * ws.dv[p];
-            stage.own.x_at[p] = ws.base[p] + stage.h * stage.v_at[p];
+            stage.own.v_at[p] += share * linear.dv[p];
+            stage.own.x_at[p] = ws.base()[p] + stage.h * stage.v_at[p];
         });
-        if (ws.rowwise) ws.rows.place(stage.x_at, stage.v_at);
-        ws.taut.clear();
-        linearise(model, options, h, timer, ws, report);
+        if (ws.plan.forces.by_rows) ws.forces.rows.place(stage.x_at, stage.v_at);
+        ws.forces.taut.clear();
+        linearise(model, options, timer, ws, report);
     };
-    const double whole = kinetic_of(model.mass, ws.dv), tolerance = options.solve.tolerance;
+    const double whole = kinetic_of(model.mass, linear.dv), tolerance = options.solve.tolerance;
     double before = std::numeric_limits<double>::infinity();
     for (int k = 1;; ++k) {
         advance(1.0);
         ws.constraints.fulfil();
         if (options.energy_limit && energy_at_end(model, ws) <= *options.energy_limit) {
-            ws.dv.assign(model.size(), Vec3::Zero());
+            linear.dv.assign(model.size(), Vec3::Zero());
             return;
         }
         double residual = residual_of(model, ws), share = 1.0;
@@ -281,9 +292,9 @@ void iterate(const ClothModel& model, const StepOptions& options, double h, Stag
             residual = residual_of(model, ws);
         }
         before = residual;
-        ws.guess.assign(model.size(), Vec3::Zero());
-        solve_stage(model, options, ws.guess, timer, ws, report);
-        if (!(kinetic_of(model.mass, ws.dv) > tolerance * tolerance * whole)) return;
+        linear.guess.assign(model.size(), Vec3::Zero());
+        solve_stage(model, options, linear.guess, timer, ws, report);
+        if (!(kinetic_of(model.mass, linear.dv) > tolerance * tolerance * whole)) return;
         if (k == newton_limit) {
             report.converged = false;
             return;

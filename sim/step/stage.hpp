@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <span>
+#include <vector>
 
 #include "sim/step/step.hpp"
 
@@ -10,27 +10,24 @@ namespace unravel::sim {
 /// The linear algebra of one stage (sim/integrators/scheme.hpp): forces at (x*, v*), the system for Δv, and
 /// what some schemes do beyond one solve. All work on the step's workspace.
 
-/// Springs that may be implicit: the cloth's; those of self-collision where the scene calls for it; bend
-/// springs where the scheme treats them so.
-struct Families {
-    std::array<SpringFamily, 3> list{};
-    std::size_t count = 0;
-    operator std::span<const SpringFamily>() const { return {list.data(), count}; }
-};
-Families families_of(const ClothModel& model, const StepWorkspace& ws);
+/// Where the stage takes forces.
+ForcesAt forces_at(const StepWorkspace& ws);
 
-/// Forces that are explicit, at (x*, v*): air, and bend springs unless the scheme treats them implicitly, for
-/// the step of h seconds from t.
-void explicit_forces(const ClothModel& model, const StepOptions& options, double t, double h,
-                     StageTimer& timer, StepWorkspace& ws, StepReport& report);
+/// What may be implicit, of every term that has any.
+StepCouplings couplings_of(const ClothModel& model, const StepWorkspace& ws);
+
+/// Plans the forces of the step of h seconds from t and evaluates those that are explicit whatever the
+/// splitting, at (x*, v*).
+void begin_forces(const ClothModel& model, const StepOptions& options, double t, double h, StageTimer& timer,
+                  StepWorkspace& ws, StepReport& report);
 
 /// Forces and Jacobians of the springs at (x*, v*) (Sec. 2) under the scheme's splitting (Sec. 3.5), and the
 /// stage's right-hand side.
-void linearise(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
-               StepWorkspace& ws, StepReport& report);
+void linearise(const ClothModel& model, const StepOptions& options, StageTimer& timer, StepWorkspace& ws,
+               StepReport& report);
 
 /// The stage's linear system (Eq. 5): decomposed (Sec. 5), assembled, and solved under the constraints (Eq.
-/// 9) one component at a time, from `guess` (particles) [m/s]. Δv in ws.dv.
+/// 9) one component at a time, from `guess` (particles) [m/s]. Δv in the linear stage.
 void solve_stage(const ClothModel& model, const StepOptions& options, std::span<const Vec3> guess,
                  StageTimer& timer, StepWorkspace& ws, StepReport& report);
 
@@ -39,14 +36,14 @@ void solve_stage(const ClothModel& model, const StepOptions& options, std::span<
 void predict_taut(const ClothModel& model, std::span<const Vec3> dv, StepWorkspace& ws);
 
 /// A second solve where the first over-extends springs that were slack: they join in from the start.
-void solve_again_where_taut(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
+void solve_again_where_taut(const ClothModel& model, const StepOptions& options, StageTimer& timer,
                             StepWorkspace& ws, StepReport& report);
 
 /// Newton's method (Eq. 4): the stage is linearised again at the end of the step that it gave, until what is
 /// added no longer matters. The constraints stay as they are; after the first solve they are met, and only S
 /// remains of them. Always-explicit forces stay those of the start.
-void iterate(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
-             StepWorkspace& ws, StepReport& report);
+void iterate(const ClothModel& model, const StepOptions& options, StageTimer& timer, StepWorkspace& ws,
+             StepReport& report);
 
 /// What a step of h seconds from `state` makes, but for what it computes: x, v, dv and contacts.
 void begin_next(const ClothState& state, double h, ClothState& next);
@@ -59,8 +56,15 @@ void require_finite(std::span<const Vec3> v, const ClothState& state, double h);
 StepReport coupled_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                         StepWorkspace& ws);
 
-/// step() of `explicit`: divided into substeps, and swept over grids (sim/sweep/).
-StepReport explicit_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
-                         StepWorkspace& ws);
+/// step() of `explicit`, divided into substeps that are swept over grids (sim/sweep/), or taken one after the
+/// other.
+StepReport swept_step(const ClothModel& model, const StepOptions& options, double h, int substeps,
+                      ClothState& state, StepWorkspace& ws);
+StepReport substeps_in_turn(const ClothModel& model, const StepOptions& options, double h, int substeps,
+                            ClothState& state, StepWorkspace& ws);
+
+/// What every kind of step ends with: components and constraints counted, the state measured.
+void finish_report(const ClothModel& model, const StepOptions& options, const ClothState& state,
+                   StageTimer& timer, StepWorkspace& ws, StepReport& report);
 
 }  // namespace unravel::sim

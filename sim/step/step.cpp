@@ -14,23 +14,25 @@ namespace unravel::sim {
 
 namespace {
 
-// S and z of Eq. (9): pins, then contacts. Depth corrections go into `base`, friction into `friction`.
+// S and z of Eq. (9): pins, then contacts, with their depth corrections and friction.
 void constrain(const ClothModel& model, const StepView& view, const ClothState& state, double h,
                StepWorkspace& ws) {
+    ContactStage& contact = ws.contact;
     ws.constraints.reset(model.size());
-    constrain_pins(model, view, ws.base, state.t + h, ws.constraints);
-    ws.touches.clear();
+    constrain_pins(model, view, ws.stage.x, state.t + h, ws.constraints);
+    contact.touches.clear();
     if (model.solids.empty()) return;
-    ws.corrected.assign(ws.base.begin(), ws.base.end());
-    ws.base = ws.corrected;
-    ws.friction.assign(model.size(), Vec3::Zero());
-    pose_solids(model.solids, state.t, h, ws.poses);
-    find_touches(model.solids, ws.poses, view, state.contacts, ws.constraints, ws.touches_found, ws.touches);
-    constrain_touches(model.solids, view, ws.touches, ws.constraints, ws.corrected, ws.friction);
+    contact.corrected.assign(ws.stage.x.begin(), ws.stage.x.end());
+    contact.friction.assign(model.size(), Vec3::Zero());
+    pose_solids(model.solids, state.t, h, contact.poses);
+    find_touches(model.solids, contact.poses, view, state.contacts, ws.constraints, contact.found,
+                 contact.touches);
+    constrain_touches(model.solids, view, contact.touches, ws.constraints, contact.corrected,
+                      contact.friction);
 }
 
-void count_springs(std::span<const SpringFamily> families, StepReport& report) {
-    for (const SpringFamily& family : families) {
+void count_springs(const StepCouplings& couplings, StepReport& report) {
+    for (const SpringFamily& family : couplings.springs) {
         for (const SpringState s : family.forces->state) {
             report.implicit += s == SpringState::implicit;
             report.explicit_ += s == SpringState::explicit_;
@@ -42,15 +44,16 @@ void count_springs(std::span<const SpringFamily> families, StepReport& report) {
 // A Δv − b of every constraint: what holds it.
 void find_reactions(const ClothModel& model, StepWorkspace& ws) {
     const std::span<const Constraint> all = ws.constraints.all();
-    ws.reaction.resize(all.size());
+    const LinearStage& linear = ws.linear;
+    ws.contact.reaction.resize(all.size());
     parallel_each(all.size(), [&](std::size_t k) {
         const std::uint32_t p = all[k].particle;
-        if (!ws.coupled) {
-            ws.reaction[k] = model.mass[p] * ws.dv[p] - ws.impulse[p];
+        if (!linear.coupled) {
+            ws.contact.reaction[k] = model.mass[p] * linear.dv[p] - linear.impulse[p];
             return;
         }
-        const std::uint32_t row = ws.system.row_of[p];
-        ws.reaction[k] = row_times(ws.system, row, ws.solve.x) - ws.system.b[row];
+        const std::uint32_t row = linear.system.row_of[p];
+        ws.contact.reaction[k] = row_times(linear.system, row, linear.solve.x) - linear.system.b[row];
     });
 }
 
@@ -59,7 +62,7 @@ void find_reactions(const ClothModel& model, StepWorkspace& ws) {
 void remember(double h, const ClothState& state, const StepWorkspace& ws, ClothState& next) {
     next.x_previous = state.x;
     next.v_previous = state.v;
-    for (const Touch& touch : ws.touches) {
+    for (const Touch& touch : ws.contact.touches) {
         const std::uint32_t p = touch.contact.particle;
         next.v_previous[p] = next.v[p];
         next.x_previous[p] = next.x[p] - h * next.v[p];
@@ -67,19 +70,6 @@ void remember(double h, const ClothState& state, const StepWorkspace& ws, ClothS
 }
 
 }  // namespace
-
-StepOptions step_options(const Solver& solver) {
-    StepOptions options;
-    options.integrator = solver.integrator;
-    options.threshold = solver.threshold;
-    options.bend = solver.bend;
-    options.activation = solver.activation;
-    options.activation_band = solver.activation_band;
-    options.substeps = solver.substeps;
-    options.solve = {solver.preconditioner, solver.tolerance, solver.max_iterations};
-    options.decompose = solver.decompose;
-    return options;
-}
 
 void require_finite(std::span<const Vec3> v, const ClothState& state, double h) {
     for (std::uint32_t p = 0; p < v.size(); ++p) {
@@ -125,11 +115,19 @@ ClothState initial_state(const Placement& placement) {
 
 StepReport step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                 StepWorkspace& ws) {
-    if (options.integrator == Integrator::automatic)
-        return step(model, choose_integrator(model, options, h, ws), h, state, ws);
-    // `explicit` has no system, so that its steps can be many, short, and fused.
-    if (options.integrator == Integrator::explicit_) return explicit_step(model, options, h, state, ws);
-    return coupled_step(model, options, h, state, ws);
+    const StepPlan& plan = plan_step(model, options, h, ws);
+    StepOptions planned = options;
+    planned.integrator = plan.integrator;
+    // Explicit steps have no system, so that they can be many, short, and fused.
+    switch (plan.way) {
+        case StepPlan::Way::swept:
+            return swept_step(model, planned, h, plan.substeps, state, ws);
+        case StepPlan::Way::in_turn:
+            return substeps_in_turn(model, planned, h, plan.substeps, state, ws);
+        case StepPlan::Way::coupled:
+            break;
+    }
+    return coupled_step(model, planned, h, state, ws);
 }
 
 StepReport coupled_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
@@ -144,7 +142,6 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     const Scheme& scheme = scheme_of(options.integrator);
     Stage& stage = ws.stage;
     scheme.begin(state, h, stage);
-    ws.base = stage.x;
     timer.lap(report.times.advance);
 
     // Constraints (Sec. 4; Baraff & Witkin 1998): S and z
@@ -153,55 +150,62 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     constrain(model, view, state, h, ws);
     if (constrained) timer.lap(report.times.contact);
 
-    ws.t_end = state.t + h;
     // Forces at (x*, v*) (Sec. 2) and the adaptive IMEX splitting (Sec. 3.5)
-    ws.taut.clear();
-    explicit_forces(model, options, state.t, h, timer, ws, report);
+    begin_forces(model, options, state.t, h, timer, ws, report);
     // Multistep schemes look ahead by themselves: at x*.
     if (options.activation == Activation::predicted && !scheme.multistep) predict_taut(model, state.dv, ws);
-    linearise(model, options, h, timer, ws, report);
+    linearise(model, options, timer, ws, report);
 
     // Independent components (Sec. 5), A Δv = b (Eq. 5) under Sx = Sb, (I − S)x = (I − S)z (Eq. 9)
     solve_stage(model, options, state.dv, timer, ws, report);
     const bool iterates = scheme.iterates || options.energy_limit;
     if (iterates) {
-        iterate(model, options, h, timer, ws, report);
+        iterate(model, options, timer, ws, report);
     } else if (options.activation == Activation::resolve) {
-        solve_again_where_taut(model, options, h, timer, ws, report);
+        solve_again_where_taut(model, options, timer, ws, report);
     }
+    require_finite(ws.linear.dv, state, h);
 
-    require_finite(ws.dv, state, h);
-    ClothState& next = ws.before;
-    begin_next(state, h, next);
+    // From here on the state is the next one; all that was read of it is now the one before.
+    std::swap(state, ws.before);
+    const ClothState& before = ws.before;
+    begin_next(before, h, state);
     if (!model.solids.empty()) {
         find_reactions(model, ws);
-        judge_touches(model.solids, view, ws.constraints, ws.reaction, ws.touches, next.contacts);
+        judge_touches(model.solids, view, ws.constraints, ws.contact.reaction, ws.contact.touches,
+                      state.contacts);
         timer.lap(report.times.contact);
     }
 
-    // v' = v* + Δv, x' = x̃ + h̃ v' (Eq. 6), and the contacts' depth corrections that `base` carries
+    // v' = v* + Δv, x' = x̃ + h̃ v' (Eq. 6), and the contacts' depth corrections
+    const std::span<const Vec3> base = ws.base();
     parallel_each(n, [&](std::size_t p) {
-        next.v[p] = stage.v_at[p] + ws.dv[p];
-        next.dv[p] = iterates ? Vec3(next.v[p] - state.v[p]) : ws.dv[p];
-        next.x[p] = ws.base[p] + stage.h * next.v[p];
+        state.v[p] = stage.v_at[p] + ws.linear.dv[p];
+        state.dv[p] = iterates ? Vec3(state.v[p] - before.v[p]) : ws.linear.dv[p];
+        state.x[p] = base[p] + stage.h * state.v[p];
     });
-    if (!model.solids.empty()) keep_outside(model.solids, ws.poses, ws.constraints, h, next.x, next.v);
-    if (scheme.multistep) remember(h, state, ws, next);
-    std::swap(state, next);
+    if (!model.solids.empty())
+        keep_outside(model.solids, ws.contact.poses, ws.constraints, h, state.x, state.v);
+    if (scheme.multistep) remember(h, before, ws, state);
     timer.lap(report.times.advance);
 
     report.t = state.t;
-    report.components = static_cast<std::uint32_t>(ws.components.count());
-    report.largest = ws.components.largest();
-    for (const Constraint& c : ws.constraints.all()) ++(c.free == 0 ? report.constrained : report.partly);
-    report.contacts = static_cast<std::uint32_t>(ws.touches.size());
-    count_springs(families_of(model, ws), report);
-    report.self_contacts =
-        static_cast<std::uint32_t>(model.self_collision ? ws.self.springs.size() - model.stitches.size() : 0);
-    report.self_distance = ws.self.least_distance;
-    if (options.measure) measure(model, ws.bend_limit, state, ws.measure, report);
-    timer.lap(report.times.measure);
+    report.contacts = static_cast<std::uint32_t>(ws.contact.touches.size());
+    count_springs(couplings_of(model, ws), report);
+    for (const ForcePlan::Term& planned : ws.plan.forces.terms) {
+        if (planned.term->count) planned.term->count(ws.forces.memory, report);
+    }
+    finish_report(model, options, state, timer, ws, report);
     return report;
+}
+
+void finish_report(const ClothModel& model, const StepOptions& options, const ClothState& state,
+                   StageTimer& timer, StepWorkspace& ws, StepReport& report) {
+    report.components = static_cast<std::uint32_t>(ws.linear.components.count());
+    report.largest = ws.linear.components.largest();
+    for (const Constraint& c : ws.constraints.all()) ++(c.free == 0 ? report.constrained : report.partly);
+    if (options.measure) measure(model, ws.forces.memory, state, ws.measure, report);
+    timer.lap(report.times.measure);
 }
 
 }  // namespace unravel::sim

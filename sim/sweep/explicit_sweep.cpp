@@ -1,5 +1,6 @@
 #include "sim/sweep/explicit_sweep.hpp"
 
+#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -8,6 +9,7 @@
 #include <atomic>
 
 #include "sim/sweep/group_sweep.hpp"
+#include "sim/sweep/row_forces.hpp"
 
 namespace unravel::sim {
 
@@ -28,7 +30,6 @@ struct SweepMemory {
     const double* model = nullptr;  // the masses that the tables were made of
     std::size_t particles = 0;
     double h = 0;
-    bool fits = false;
     std::vector<SweptCloth> cloths;
     std::vector<SweepSubstep> substeps;
     tbb::enumerable_thread_specific<SweepWorker> workers;
@@ -74,32 +75,37 @@ ExplicitSweep::~ExplicitSweep() = default;
 ExplicitSweep::ExplicitSweep(ExplicitSweep&&) noexcept = default;
 ExplicitSweep& ExplicitSweep::operator=(ExplicitSweep&&) noexcept = default;
 
-bool ExplicitSweep::prepare(const ClothModel& model, const BendLimit& limit, double h) {
+std::string why_not_swept(const ClothModel& model) {
+    std::string why = why_not_by_rows(model);
+    each_term(model, [&](const ForceTerm& term) {
+        if (why.empty() && !term.rows && !term.part_of_rows)
+            why = fmt::format("{} has no version along rows", term.name);
+    });
+    for (const Solid& solid : model.solids) {
+        if (why.empty() && solid.shape == Shape::mesh)
+            why = fmt::format("the solid {} is a mesh", solid.name);
+    }
+    return why;
+}
+
+void ExplicitSweep::prepare(const ClothModel& model, const ForceMemory& forces, double h) {
     SweepMemory& memory = *memory_;
-    if (memory.model == model.mass.data() && memory.particles == model.size() && memory.h == h)
-        return memory.fits;
+    if (memory.model == model.mass.data() && memory.particles == model.size() && memory.h == h) return;
     memory.model = model.mass.data();
     memory.particles = model.size();
     memory.h = h;
     memory.cloths.clear();
-    const auto is_mesh = [](const auto& body) { return body.shape == Shape::mesh; };
-    // A model may hold particles of no cloth.
-    std::size_t covered = 0;
-    for (const ClothPatch& patch : model.cloths) covered += patch.count();
-    memory.fits = covered == model.size() && !model.has_temporary_springs() &&
-                  std::none_of(model.solids.begin(), model.solids.end(), is_mesh);
-    auto grid = model.grids.begin();
-    for (std::size_t k = 0; memory.fits && k < model.cloths.size(); ++k) {
-        memory.fits = is_swept(model.cloths[k]);
-        if (!memory.fits) break;
+    for (std::size_t k = 0; k < model.cloths.size(); ++k) {
         SweptCloth& cloth = memory.cloths.emplace_back(model.cloths[k]);
-        build_tables(model, *grid++, limit, cloth.tables);
+        build_tables(model, model.grids[k], forces.bending.limit, cloth.tables);
+        each_term(model, [&](const ForceTerm& term) {
+            if (term.rows && !(term.rows->present && !term.rows->present(cloth.tables)))
+                cloth.terms.push_back(term.rows);
+        });
         if (!model.solids.empty())
             cloth.stretches = (cloth.columns() + contact_columns - 1) / contact_columns;
         place_pins(model, cloth);
     }
-    if (!memory.fits) memory.cloths.clear();
-    return memory.fits;
 }
 
 void ExplicitSweep::run(const ClothModel& model, const ClothState& state, int substeps, ClothState& next,

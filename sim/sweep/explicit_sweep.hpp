@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "sim/constraints/contact.hpp"
 #include "sim/model/model.hpp"
 #include "sim/model/report.hpp"
 #include "sim/model/state.hpp"
+#include "sim/terms/terms.hpp"
 
 namespace unravel::sim {
 
@@ -19,6 +21,10 @@ namespace unravel::sim {
 /// threads take turns with groups of substeps without ever waiting for a whole pass. Each row's arithmetic is
 /// the same whoever does it and when, so any number of threads gives the same bits.
 
+/// Why a model can't be swept, so that every substep takes the long way: its cloths don't go by rows, a force
+/// that acts on them has no version along rows, or a solid is a mesh. Empty: it can.
+std::string why_not_swept(const ClothModel& model);
+
 struct SweepMemory;
 
 /// The sweep's tables and rows, kept between steps.
@@ -29,9 +35,9 @@ public:
     ExplicitSweep(ExplicitSweep&&) noexcept;
     ExplicitSweep& operator=(ExplicitSweep&&) noexcept;
 
-    /// Makes ready for substeps of h seconds of a model; does nothing where it is so already. False where the
-    /// model's cloths are no grids of springs, or push each other away: then every step takes the long way.
-    bool prepare(const ClothModel& model, const BendLimit& limit, double h);
+    /// Makes ready for substeps of h seconds of a model that can be swept; does nothing where it is so
+    /// already. `forces` is as prepare_terms() left it for h.
+    void prepare(const ClothModel& model, const ForceMemory& forces, double h);
 
     /// Takes a state through `substeps` substeps of the prepared size. Pins, contact with solids and air act
     /// in each as they do in step(). What was constrained in the last substep stays in `constraints`, and

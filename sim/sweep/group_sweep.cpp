@@ -18,7 +18,7 @@ void wait(const std::atomic<std::size_t>& rows, std::size_t needed) {
 void GroupSweep::run(std::size_t group, std::atomic<std::size_t>* passed, SweepWorker& worker) {
     const std::size_t first = group * levels_, count = std::min(levels_, substeps_.size() - first);
     const std::size_t rows = cloth_.rows();
-    worker.forces.assign(count * 9 * cloth_.stride, 0.0);
+    worker.forces.assign(count * rows_in_flight * 3 * cloth_.stride, 0.0);
     for (std::size_t front = 0; front < rows + sweep_lag * (count - 1); ++front) {
         for (std::size_t level = 0; level < count; ++level) {
             if (front < sweep_lag * level || front - sweep_lag * level >= rows) continue;
@@ -31,47 +31,21 @@ void GroupSweep::run(std::size_t group, std::atomic<std::size_t>* passed, SweepW
     }
 }
 
-Row GroupSweep::force(std::size_t row, std::size_t level, SweepWorker& worker) const {
-    double* const f = worker.forces.data() + (level * 3 + row % 3) * 3 * cloth_.stride + seam_margin;
-    return {f, f + cloth_.stride, f + 2 * cloth_.stride};
-}
-
 // All springs and cells that begin in a row; then all of the row's forces are there, and it moves.
 void GroupSweep::move(std::size_t row, const SweepSubstep& substep, std::size_t level, SweepWorker& worker) {
-    const auto f = [&](std::size_t r) { return force(r, level, worker); };
-    const std::size_t rows = cloth_.rows();
-    for (std::size_t k = 0; k < extension_families.size(); ++k) {
-        const GridFamily& family = extension_families[k];
-        const std::size_t other = row + static_cast<std::size_t>(family.dv);
-        if (other >= rows) continue;
-        const GridTables::Extension& t = cloth_.tables.extension[k];
-        extension_row(cloth_.at(row).from(family.from_u), cloth_.at(other).from(family.to_u), t.rest,
-                      t.stiffness.row(row), t.damping.row(row), family_columns(cloth_.patch, family),
-                      from(f(row), family.from_u), from(f(other), family.to_u));
-    }
-    for (std::size_t k = 0; k < bend_families.size(); ++k) {
-        const GridFamily& family = bend_families[k];
-        const std::size_t other = row + static_cast<std::size_t>(family.dv);
-        const GridTables::Bend& t = cloth_.tables.bend[k];
-        if (!t.any || other >= rows) continue;
-        bend_row(cloth_.at(row).from(family.from_u), cloth_.at(other).from(family.to_u), t.rest,
-                 t.arc.row(row), t.slope.row(row), t.crossing.row(row), family_columns(cloth_.patch, family),
-                 from(f(row), family.from_u), from(f(other), family.to_u));
-    }
-    if (model_.wind && row + 1 < rows) {
-        air_row(cloth_.at(row), cloth_.at(row + 1), cloth_.tables.mass.row(row),
-                cloth_.tables.mass.row(row + 1), substep.wind,
-                static_cast<std::size_t>(cloth_.patch.cells_u()), f(row), f(row + 1));
-    }
+    const RowRing forces{worker.forces.data() + level * rows_in_flight * 3 * cloth_.stride, cloth_.stride};
+    const RowPass pass{cloth_, cloth_.tables, substep.wind, forces, 0};
+    for (const RowVersion* const term : cloth_.terms) term->add(pass, row);
+    const Row f = forces.row(row);
     if (cloth_.patch.tube) {
-        for (double* const y : f(row)) {
+        for (double* const y : f) {
             for (std::size_t k = 0; k < seam_margin / 2; ++k) {
                 y[k] += y[cloth_.columns() + k];
                 y[cloth_.columns() + k] = 0;
             }
         }
     }
-    advance(row, substep, f(row), worker);
+    advance(row, substep, f, worker);
     cloth_.repeat_over_seam(row);
 }
 

@@ -37,7 +37,6 @@ public:
     void run(std::size_t group, std::atomic<std::size_t>* passed, SweepWorker& worker);
 
 private:
-    Row force(std::size_t row, std::size_t level, SweepWorker& worker) const;
     void move(std::size_t row, const SweepSubstep& substep, std::size_t level, SweepWorker& worker);
     void find_held(std::size_t row, const SweepSubstep& substep, SweepWorker& worker) const;
     RowStretch stretch(std::size_t row, std::size_t k, const Row& f, SweepWorker& worker) const;

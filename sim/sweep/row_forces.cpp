@@ -1,27 +1,22 @@
 #include "sim/sweep/row_forces.hpp"
 
+#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 
-#include "sim/forces/air.hpp"
-#include "sim/sweep/grid_tables.hpp"
-
 namespace unravel::sim {
 
 // Rows of a band: what a band evaluates once more, two rows at most, should be little of it.
 constexpr std::size_t band_rows = 16;
-// Rows in flight: a spring reaches from its own to the next but one.
-constexpr std::size_t flight = 3;
-
 struct RowCloth : GridRows {
     using GridRows::GridRows;
     const GridSprings* grid = nullptr;
     GridTables tables;
     std::array<RowTable, 4> is_explicit;  // as extension_families
-    bool bends = false;                   // it has bend springs
-    std::vector<double> pushed;           // row by row: x, y, z of bending and air; empty: neither
+    std::vector<double> pushed;           // row by row: x, y, z of explicit forces
+    bool pushes = false;                  // there are any
 
     std::size_t bands() const { return (rows() + band_rows - 1) / band_rows; }
     Row pushed_row(std::size_t row) {
@@ -33,16 +28,10 @@ struct RowCloth : GridRows {
 // The forces of the rows in flight.
 struct Flight {
     std::vector<double> forces;
-    std::size_t stride = 0;
-    void start(std::size_t of) {
-        stride = of;
-        forces.assign(flight * 3 * stride, 0.0);
+    RowRing start(std::size_t stride) {
+        forces.assign(rows_in_flight * 3 * stride, 0.0);
+        return {forces.data(), stride};
     }
-    Row row(std::size_t j) {
-        double* const f = forces.data() + j % flight * 3 * stride + seam_margin;
-        return {f, f + stride, f + 2 * stride};
-    }
-    void clear(std::size_t j) { std::fill_n(forces.data() + j % flight * 3 * stride, 3 * stride, 0.0); }
 };
 
 namespace {
@@ -60,74 +49,76 @@ void fold_over_seam(const RowCloth& cloth, const Row& f) {
 struct RowForcesMemory {
     const double* model = nullptr;  // the masses that the tables were made of
     std::size_t particles = 0;
-    double limit_h = 0;
-    RowSplitting splitting;
-    bool fits = false;
+    ForceSettings settings;
     std::vector<RowCloth> cloths;
     tbb::enumerable_thread_specific<Flight> flights;
 
-    // Calls base(row, first, flight) for the rows from which something reaches the band, `first` being the
-    // band's first row, and done(row, forces) for its own once all has arrived.
+    // Calls base(pass, row) for the rows from which something reaches the band that begins with row
+    // `pass.first`, and done(row, forces) for its own once all has arrived.
     template <typename Base, typename Done>
-    void over_bands(RowCloth& cloth, std::size_t reach, const Base& base, const Done& done) {
+    void over_bands(RowCloth& cloth, const RowWind& wind, std::size_t reach, const Base& base,
+                    const Done& done) {
         tbb::parallel_for(std::size_t{0}, cloth.bands(), [&](std::size_t band) {
-            Flight& forces = flights.local();
-            forces.start(cloth.stride);
             const std::size_t first = band * band_rows, last = std::min(first + band_rows, cloth.rows());
+            const RowPass pass{cloth, cloth.tables, wind, flights.local().start(cloth.stride), first};
             for (std::size_t row = first - std::min(first, reach); row < last; ++row) {
-                base(row, first, forces);
+                base(pass, row);
                 if (row >= first) {
-                    fold_over_seam(cloth, forces.row(row));
-                    done(row, forces.row(row));
+                    fold_over_seam(cloth, pass.forces.row(row));
+                    done(row, pass.forces.row(row));
                 }
-                forces.clear(row);
+                pass.forces.clear(row);
             }
         });
     }
 };
+
+std::string why_not_by_rows(const ClothModel& model) {
+    std::size_t covered = 0;
+    for (const ClothPatch& patch : model.cloths) {
+        if (!patch.grid()) return fmt::format("cloth {} is a mesh", patch.name);
+        if (!is_swept(patch))
+            return fmt::format("the tube {} is too narrow for springs that reach over two columns",
+                               patch.name);
+        covered += patch.count();
+    }
+    return covered == model.size() ? "" : "some particles belong to no cloth";
+}
+
+RowWind row_wind(const ClothModel& model, double t, double h) {
+    if (!model.wind) return {};
+    return {wind_velocity(*model.wind, t), model.wind->density, model.wind->drag, model.wind->lift, h};
+}
 
 RowForces::RowForces() : memory_(std::make_unique<RowForcesMemory>()) {}
 RowForces::~RowForces() = default;
 RowForces::RowForces(RowForces&&) noexcept = default;
 RowForces& RowForces::operator=(RowForces&&) noexcept = default;
 
-bool RowForces::prepare(const ClothModel& model, const BendLimit& limit, const RowSplitting& splitting) {
+void RowForces::prepare(const ClothModel& model, const ForceMemory& forces, const ForceSettings& settings) {
     RowForcesMemory& memory = *memory_;
-    if (memory.model == model.mass.data() && memory.particles == model.size() && memory.limit_h == limit.h &&
-        memory.splitting == splitting)
-        return memory.fits;
+    if (memory.model == model.mass.data() && memory.particles == model.size() && memory.settings == settings)
+        return;
     memory.model = model.mass.data();
     memory.particles = model.size();
-    memory.limit_h = limit.h;
-    memory.splitting = splitting;
+    memory.settings = settings;
     memory.cloths.clear();
-    memory.fits = std::all_of(model.cloths.begin(), model.cloths.end(), is_swept);
-    std::size_t covered = 0;
-    for (const ClothPatch& patch : model.cloths) covered += patch.count();
-    memory.fits = memory.fits && covered == model.size();  // a model may hold particles of no cloth
-    for (std::size_t k = 0; memory.fits && k < model.cloths.size(); ++k) {
+    for (std::size_t k = 0; k < model.cloths.size(); ++k) {
         RowCloth& cloth = memory.cloths.emplace_back(model.cloths[k]);
         cloth.grid = &model.grids[k];
-        build_tables(model, *cloth.grid, limit, cloth.tables);
+        build_tables(model, *cloth.grid, forces.bending.limit, cloth.tables);
         const auto rows = extension_rows(*cloth.grid);
-        for (std::size_t f = 0; f < rows.size(); ++f) {
-            const ExtensionSprings& springs = model.springs;
-            const auto bears = [&](std::uint32_t s) {
-                const double lighter = std::min(model.mass[springs.i[s]], model.mass[springs.j[s]]);
-                const double threshold = s < springs.stretch_count ? splitting.splitting.stretch_threshold
-                                                                   : splitting.splitting.shear_threshold;
-                return kappa(splitting.h, 1.0 / lighter, springs.stiffness[s], springs.damping[s]) <=
-                               threshold
-                           ? 1.0
-                           : 0.0;
-            };
+        const ExtensionSprings& springs = model.springs;
+        const auto bears = [&](std::uint32_t s) {
+            const double of_spring =
+                kappa_between(settings.h, model.mass[springs.i[s]], model.mass[springs.j[s]],
+                              springs.stiffness[s], springs.damping[s]);
+            return is_explicit(of_spring, settings.splitting.threshold(s < springs.stretch_count)) ? 1.0
+                                                                                                   : 0.0;
+        };
+        for (std::size_t f = 0; f < rows.size(); ++f)
             tabulate(*cloth.grid, *rows[f], bears, cloth.is_explicit[f]);
-        }
-        cloth.bends = std::any_of(cloth.tables.bend.begin(), cloth.tables.bend.end(),
-                                  [](const GridTables::Bend& b) { return b.any; });
-        if (cloth.bends || model.wind) cloth.pushed.assign(cloth.rows() * 3 * cloth.stride, 0.0);
     }
-    return memory.fits;
 }
 
 std::size_t RowForces::bytes() const {
@@ -153,8 +144,7 @@ void RowForces::mark(const ClothModel& model, std::span<const Vec3> end, std::ve
     for (RowCloth& cloth : memory_->cloths) {
         tbb::parallel_for(std::size_t{0}, cloth.bands(), [&](std::size_t band) {
             // Two rows of end positions, turned as they are reached.
-            Flight& rows = memory_->flights.local();
-            rows.start(cloth.stride);
+            const RowRing rows = memory_->flights.local().start(cloth.stride);
             const std::size_t first = band * band_rows, last = std::min(first + band_rows, cloth.rows());
             const auto turn = [&](std::size_t row) {
                 const Row to = rows.row(row);
@@ -184,83 +174,59 @@ void RowForces::mark(const ClothModel& model, std::span<const Vec3> end, std::ve
     }
 }
 
-void RowForces::bend(bool acts) {
-    for (RowCloth& cloth : memory_->cloths) {
-        if (!acts || !cloth.bends) {
-            std::fill(cloth.pushed.begin(), cloth.pushed.end(), 0.0);
-            continue;
-        }
-        const auto base = [&](std::size_t row, std::size_t first, Flight& forces) {
-            for (std::size_t f = 0; f < bend_families.size(); ++f) {
-                const GridFamily& family = bend_families[f];
-                const std::size_t other = row + static_cast<std::size_t>(family.dv);
-                const GridTables::Bend& table = cloth.tables.bend[f];
-                if (!table.any || other >= cloth.rows() || other < first) continue;
-                bend_row(cloth.at(row).from(family.from_u), cloth.at(other).from(family.to_u), table.rest,
-                         table.arc.row(row), table.slope.row(row), table.crossing.row(row),
-                         family_columns(cloth.patch, family), from(forces.row(row), family.from_u),
-                         from(forces.row(other), family.to_u));
-            }
-        };
-        const auto done = [&](std::size_t row, const Row& f) {
-            const Row to = cloth.pushed_row(row);
-            for (std::size_t c = 0; c < 3; ++c) std::copy_n(f[c], cloth.columns(), to[c]);
-        };
-        memory_->over_bands(cloth, 2, base, done);
-    }
+void RowForces::begin() {
+    for (RowCloth& cloth : memory_->cloths) cloth.pushes = false;
 }
 
-void RowForces::blow(const ClothModel& model, double t) {
-    const RowWind wind{wind_velocity(*model.wind, t), model.wind->density, model.wind->drag, model.wind->lift,
-                       memory_->splitting.h};
+void RowForces::push(const ClothModel& model, const RowVersion& term, double t) {
+    const RowWind wind = row_wind(model, t, memory_->settings.h);
     for (RowCloth& cloth : memory_->cloths) {
-        const auto base = [&](std::size_t row, std::size_t, Flight& forces) {
-            if (row + 1 >= cloth.rows()) return;
-            air_row(cloth.at(row), cloth.at(row + 1), cloth.tables.mass.row(row),
-                    cloth.tables.mass.row(row + 1), wind, static_cast<std::size_t>(cloth.patch.cells_u()),
-                    forces.row(row), forces.row(row + 1));
-        };
+        if (term.present && !term.present(cloth.tables)) continue;
+        cloth.pushed.resize(cloth.rows() * 3 * cloth.stride);
+        const bool first = !cloth.pushes;
         const auto done = [&](std::size_t row, const Row& f) {
             const Row to = cloth.pushed_row(row);
             for (std::size_t c = 0; c < 3; ++c) {
-                for (std::size_t i = 0; i < cloth.columns(); ++i) to[c][i] += f[c][i];
+                if (first) std::copy_n(f[c], cloth.columns(), to[c]);
+                for (std::size_t i = 0; !first && i < cloth.columns(); ++i) to[c][i] += f[c][i];
             }
         };
-        memory_->over_bands(cloth, 1, base, done);
+        memory_->over_bands(cloth, wind, term.reach, term.add, done);
+        cloth.pushes = true;
     }
 }
 
 void RowForces::gather(const ClothModel& model, std::span<const std::uint8_t> taut, std::span<Vec3> force,
                        std::vector<SpringState>& state) {
     state.resize(model.springs.size());
-    const double band = memory_->splitting.band;
+    const double band = memory_->settings.band;
     for (RowCloth& cloth : memory_->cloths) {
         const auto springs = extension_rows(*cloth.grid);
-        const auto base = [&](std::size_t row, std::size_t first, Flight& forces) {
-            for (std::size_t f = 0; f < springs.size(); ++f) {
-                const GridFamily& family = extension_families[f];
-                const std::size_t other = row + static_cast<std::size_t>(family.dv);
-                if (row >= springs[f]->rows || other < first) continue;
-                const GridTables::Extension& table = cloth.tables.extension[f];
-                const std::uint32_t at = springs[f]->at(0, static_cast<std::uint32_t>(row));
-                split_row(cloth.at(row).from(family.from_u), cloth.at(other).from(family.to_u), table.rest,
-                          table.stiffness.row(row), table.damping.row(row), cloth.is_explicit[f].row(row),
-                          taut.empty() ? nullptr : taut.data() + at, (1.0 - band) * table.rest,
-                          springs[f]->per_row, from(forces.row(row), family.from_u),
-                          from(forces.row(other), family.to_u), row >= first ? state.data() + at : nullptr);
-            }
+        const auto base = [&](const RowPass& pass, std::size_t row) {
+            each_family(pass, row, extension_families,
+                        [&](std::size_t k, const RowState& a, const RowState& b, std::size_t count,
+                            const Row& fa, const Row& fb) {
+                            const GridTables::Extension& table = cloth.tables.extension[k];
+                            const std::uint32_t at = springs[k]->at(0, static_cast<std::uint32_t>(row));
+                            split_row(a, b, table.rest, table.stiffness.row(row), table.damping.row(row),
+                                      cloth.is_explicit[k].row(row),
+                                      taut.empty() ? nullptr : taut.data() + at, (1.0 - band) * table.rest,
+                                      count, fa, fb, row >= pass.first ? state.data() + at : nullptr);
+                        });
         };
         const auto done = [&](std::size_t row, const Row& f) {
-            if (!cloth.pushed.empty()) {
+            if (cloth.pushes) {
                 const Row pushed = cloth.pushed_row(row);
                 for (std::size_t c = 0; c < 3; ++c) {
                     for (std::size_t i = 0; i < cloth.columns(); ++i) f[c][i] += pushed[c][i];
                 }
             }
             Vec3* const to = force.data() + cloth.patch.first + row * cloth.columns();
-            for (std::size_t i = 0; i < cloth.columns(); ++i) to[i] = {f[0][i], f[1][i], f[2][i]};
+            const double* const mass = cloth.tables.mass.row(row);
+            for (std::size_t i = 0; i < cloth.columns(); ++i)
+                to[i] = mass[i] * model.gravity + Vec3(f[0][i], f[1][i], f[2][i]);
         };
-        memory_->over_bands(cloth, 1, base, done);
+        memory_->over_bands(cloth, {}, 1, base, done);
     }
 }
 

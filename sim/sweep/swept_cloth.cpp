@@ -4,6 +4,7 @@
 
 #include "sim/constraints/pins.hpp"
 #include "sim/solids/motion.hpp"
+#include "sim/sweep/row_forces.hpp"
 
 namespace unravel::sim {
 
@@ -39,10 +40,7 @@ void plan_substeps(const ClothModel& model, double t, double h, int count, std::
     for (std::size_t s = 0; s < out.size(); ++s) {
         const double begin = t + static_cast<double>(s) * h;
         SweepSubstep& substep = out[s];
-        if (model.wind) {
-            substep.wind = {wind_velocity(*model.wind, begin), model.wind->density, model.wind->drag,
-                            model.wind->lift, h};
-        }
+        substep.wind = row_wind(model, begin, h);
         if (!model.solids.empty()) pose_substep(model.solids, begin, h, substep.solids);
         substep.pins.clear();
         substep.holds.clear();

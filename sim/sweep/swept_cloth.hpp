@@ -4,9 +4,8 @@
 #include <vector>
 
 #include "sim/model/state.hpp"
-#include "sim/sweep/grid_rows.hpp"
-#include "sim/sweep/grid_tables.hpp"
 #include "sim/sweep/row_contact.hpp"
+#include "sim/terms/row_version.hpp"
 
 namespace unravel::sim {
 
@@ -29,6 +28,7 @@ struct SweepSubstep {
 struct SweptCloth : GridRows {
     using GridRows::GridRows;
     GridTables tables;
+    std::vector<const RowVersion*> terms;   ///< forces that act on it, in the order of the list
     std::vector<std::vector<RowPin>> pins;  ///< (rows)
     std::vector<RowContacts> contacts;      ///< (stretches); empty without solids
     std::size_t stretches = 0;              ///< per row

@@ -137,9 +137,9 @@ TEST_CASE(
     Simulation stiff = start_simulation(scene);
     CHECK(step(stiff.model, stiff.options, 0.04, stiff.state, stiff.ws).implicit > 0);
     StepWorkspace fresh;
-    CHECK(choose_integrator(stiff.model, stiff.options, 0.04, fresh).integrator == Integrator::adaptive_imex);
+    CHECK(plan_step(stiff.model, stiff.options, 0.04, fresh).integrator == Integrator::adaptive_imex);
     fresh = {};
-    CHECK(choose_integrator(soft.model, soft.options, 0.005, fresh).integrator == Integrator::explicit_);
+    CHECK(plan_step(soft.model, soft.options, 0.005, fresh).integrator == Integrator::explicit_);
 }
 
 TEST_CASE("auto counts the contact that every substep looks into", "[sweep]") {
@@ -149,7 +149,7 @@ TEST_CASE("auto counts the contact that every substep looks into", "[sweep]") {
     scene.solids.emplace_back().shape = Shape::sphere;
     const Simulation beside_ball = start_simulation(scene);
     const auto costs = [](const Simulation& s, double h) {
-        StepWorkspace fresh;
+        PlanMemory fresh;
         return count_costs(s.model, s.options, h, fresh);
     };
     double h = 1e-4;

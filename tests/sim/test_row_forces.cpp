@@ -61,14 +61,15 @@ Difference compare(const Scene& scene, const StepOptions& options, int steps) {
         springs.state = rows.state;
         step(rows.model, by_row, 0.005, rows.state, rows.ws);
         step(springs.model, by_spring, 0.005, springs.state, springs.ws);
-        CHECK(rows.ws.rowwise);
-        CHECK(!springs.ws.rowwise);
+        CHECK(rows.ws.plan.forces.by_rows);
+        CHECK(!springs.ws.plan.forces.by_rows);
         for (std::size_t p = 0; p < rows.model.size(); ++p) {
-            out.force = std::max(out.force, (rows.ws.impulse[p] - springs.ws.impulse[p]).norm() / 0.005);
-            out.scale = std::max(out.scale, springs.ws.impulse[p].norm() / 0.005);
+            out.force = std::max(out.force,
+                                 (rows.ws.linear.impulse[p] - springs.ws.linear.impulse[p]).norm() / 0.005);
+            out.scale = std::max(out.scale, springs.ws.linear.impulse[p].norm() / 0.005);
         }
         for (std::size_t s = 0; s < rows.model.springs.size(); ++s)
-            out.states += rows.ws.extension.state[s] != springs.ws.extension.state[s];
+            out.states += rows.ws.forces.memory.springs.state[s] != springs.ws.forces.memory.springs.state[s];
     }
     return out;
 }

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "sim/step/stage.hpp"
+#include "sim/step/trace.hpp"
 #include "tests/sim/scenes.hpp"
 
 using namespace unravel;
@@ -30,21 +30,19 @@ TEST_CASE("at every step the decomposed solution meets the whole system's tolera
     int decomposed_steps = 0;
     for (int k = 0; k < 120; ++k) {
         step(simulation.model, simulation.options, 0.005, simulation.state, simulation.ws);
-        StepWorkspace& ws = simulation.ws;
-        decomposed_steps += ws.components.count() > 1;
+        const StepTrace trace = trace_of(simulation.model, simulation.ws);
+        decomposed_steps += trace.components.count() > 1;
         // The very same system undecomposed: residual of the decomposed solution in the stopping rule's norm.
         Components whole;
         whole_cloth(simulation.model.size(), whole);
-        const Families families = families_of(simulation.model, ws);
-        const Load load{simulation.model.mass, ws.impulse, ws.drift};
         System system, parts;
-        assemble({families}, load, whole, ws.constraints, 0.005, system);
-        assemble({families}, load, ws.components, ws.constraints, 0.005, parts);
+        assemble(trace.couplings, trace.load, whole, trace.constraints, 0.005, system);
+        assemble(trace.couplings, trace.load, trace.components, trace.constraints, 0.005, parts);
         BlockPreconditioner P;
-        build_preconditioner(Preconditioner::constrained_block, system, whole, ws.constraints, P);
+        build_preconditioner(Preconditioner::constrained_block, system, whole, trace.constraints, P);
         double residual = 0, right = 0;
         for (std::uint32_t p = 0; p < simulation.model.size(); ++p) {
-            const Vec3 r = system.b[p] - row_times(system, p, ws.dv);
+            const Vec3 r = system.b[p] - row_times(system, p, trace.dv);
             residual += r.dot(P.inverse[p] * r);
             // Neighbours that are held are part of a component's right-hand side.
             const Vec3& b = parts.b[parts.row_of[p]];
@@ -160,23 +158,25 @@ TEST_CASE("effects that the scene does not name hold no memory and take no time"
     const std::vector<StepReport> reports = run_steps(simulation, 4);
     const ClothModel& model = simulation.model;
     const StepWorkspace& ws = simulation.ws;
+    const ForceMemory& forces = ws.forces.memory;
     const std::pair<const char*, std::size_t> held[] = {
-        {"air",
-         ws.air_cells.corners.capacity() + ws.air_cells.start.capacity() + ws.air_cells.cells.capacity()},
-        {"air forces", ws.air.capacity()},
+        {"air", forces.air.cells.corners.capacity() + forces.air.cells.start.capacity() +
+                    forces.air.cells.cells.capacity()},
+        {"air forces", forces.air.force.capacity()},
         {"pins", model.pins.capacity()},
         {"solids", model.solids.capacity()},
-        {"poses", ws.poses.now.capacity() + ws.poses.next.capacity()},
-        {"touches", ws.touches.capacity() + ws.touches_found.capacity()},
-        {"friction", ws.friction.capacity()},
-        {"reactions", ws.reaction.capacity()},
+        {"poses", ws.contact.poses.now.capacity() + ws.contact.poses.next.capacity()},
+        {"touches", ws.contact.touches.capacity() + ws.contact.found.capacity()},
+        {"friction", ws.contact.friction.capacity()},
+        {"reactions", ws.contact.reaction.capacity()},
         {"contacts", simulation.state.contacts.capacity()},
-        {"bends", model.bends.i.capacity() + model.bends.stiffness.bytes() + ws.bend.capacity()},
-        {"self-collision", ws.self.springs.i.capacity() + ws.self.forces.force.capacity() +
-                               ws.self.adjacency.start.capacity() + ws.self.x_searched.capacity() +
-                               ws.self.candidate_i.capacity() + ws.self.voxel_start.capacity() +
-                               ws.self.found.capacity()},
-        {"comparison", ws.whole_system.entries.capacity() + ws.whole_solves.capacity()},
+        {"bends", model.bends.i.capacity() + model.bends.stiffness.bytes() + forces.bending.force.capacity()},
+        {"self-collision",
+         forces.self_collision.springs.i.capacity() + forces.self_collision.forces.force.capacity() +
+             forces.self_collision.adjacency.start.capacity() + forces.self_collision.x_searched.capacity() +
+             forces.self_collision.candidate_i.capacity() + forces.self_collision.voxel_start.capacity() +
+             forces.self_collision.found.capacity()},
+        {"comparison", ws.whole.system.entries.capacity() + ws.whole.solves.capacity()},
         {"multistep", simulation.state.x_previous.capacity() + simulation.state.v_previous.capacity()},
     };
     for (const auto& [effect, count] : held) {

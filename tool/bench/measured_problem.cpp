@@ -74,44 +74,39 @@ MeasuredProblem::Steps MeasuredProblem::run_steps(const StepKind& kind, int coun
 }
 
 void MeasuredProblem::capture(int threads) {
-    StepWorkspace& ws = simulation_.ws;
     ClothState state = simulation_.state;
     guess_ = state.dv;
     tbb::task_arena arena(threads);
-    const StepReport report =
-        arena.execute([&] { return step(simulation_.model, simulation_.options, h_, state, ws); });
+    const StepReport report = arena.execute(
+        [&] { return step(simulation_.model, simulation_.options, h_, state, simulation_.ws); });
     constrained_ = report.constrained;
-    families_ = families_of(simulation_.model, ws);
-    load_ = {simulation_.model.mass, ws.impulse, ws.drift};
-    largest_ = only_largest(ws.components);
+    const StepTrace trace = trace_of(simulation_.model, simulation_.ws);
+    couplings_ = trace.couplings;
+    load_ = trace.load;
+    stage_h_ = trace.h;
+    components_ = trace.components;
+    constraints_ = trace.constraints;
+    largest_ = only_largest(components_);
 }
 
 StepSystem MeasuredProblem::system(const Components& components) const {
-    const StepWorkspace& ws = simulation_.ws;
-    return {simulation_.model.grids,
-            {families_, ws.stencils},
-            load_,
-            components,
-            ws.constraints,
-            guess_,
-            ws.stage.h,
+    return {simulation_.model.grids,    couplings_, load_, components, constraints_, guess_, stage_h_,
             &simulation_.model.stitches};
 }
 
 MeasuredProblem::Solve MeasuredProblem::solve(const Components& components, const SolveOptions& options,
                                               int threads) {
-    StepWorkspace& ws = simulation_.ws;
     const StepSystem step = system(components);
     Solve out;
     tbb::task_arena arena(threads);
     arena.execute([&] {
         const auto start = Clock::now();
-        assemble_components(step, options, ws.grid_solves, ws.system);
+        assemble_components(step, options, grids_, rows_system_);
         out.set_up = since(start);
-        solve_components(step, options, ws.grid_solves, ws.system, ws.solve, ws.solves);
+        solve_components(step, options, grids_, rows_system_, solve_, solves_);
         out.seconds = since(start);
     });
-    for (const ComponentSolve& s : ws.solves) {
+    for (const ComponentSolve& s : solves_) {
         out.rvm += s.rvm;
         out.iterations = std::max<double>(out.iterations, s.iterations);
     }
@@ -119,7 +114,7 @@ MeasuredProblem::Solve MeasuredProblem::solve(const Components& components, cons
 }
 
 MeasuredProblem::Solve MeasuredProblem::solve(const SolveOptions& options, int threads) {
-    return solve(simulation_.ws.components, options, threads);
+    return solve(components_, options, threads);
 }
 
 MeasuredProblem::Solve MeasuredProblem::solve_largest(const SolveOptions& options, int threads) {
@@ -127,30 +122,28 @@ MeasuredProblem::Solve MeasuredProblem::solve_largest(const SolveOptions& option
 }
 
 std::vector<Vec3> MeasuredProblem::solution() const {
-    const Components& components = simulation_.ws.components;
-    std::vector<Vec3> dv(components.order.size());
-    for (std::size_t row = 0; row < dv.size(); ++row) dv[components.order[row]] = simulation_.ws.solve.x[row];
+    std::vector<Vec3> dv(components_.order.size());
+    for (std::size_t row = 0; row < dv.size(); ++row) dv[components_.order[row]] = solve_.x[row];
     return dv;
 }
 
 const GridSystem* MeasuredProblem::grid() const {
-    const GridSolves& solves = simulation_.ws.grid_solves;
     const GridSystem* largest = nullptr;
-    for (std::size_t k = 0; k < solves.plan.on_grid.size(); ++k) {
-        const GridSystem& system = solves.grids[k]->system;
-        if (solves.grids[k]->solved && (!largest || system.rows > largest->rows)) largest = &system;
+    for (std::size_t k = 0; k < grids_.plan.on_grid.size(); ++k) {
+        const GridSystem& system = grids_.grids[k]->system;
+        if (grids_.grids[k]->solved && (!largest || system.rows > largest->rows)) largest = &system;
     }
-    return largest && largest->rows == simulation_.ws.components.largest() ? largest : nullptr;
+    return largest && largest->rows == components_.largest() ? largest : nullptr;
 }
 
 FoldedSystem MeasuredProblem::folded() {
-    StepWorkspace& ws = simulation_.ws;
-    const StepSystem step = system(ws.components);
-    assemble(step.couplings, step.load, step.components, step.constraints, step.h, ws.system);
-    const std::uint32_t rows = ws.components.start.back();
+    const StepSystem step = system(components_);
+    assemble(step.couplings, step.load, step.components, step.constraints, step.h, rows_system_);
+    const std::uint32_t rows = components_.start.back();
     rows_ = rows;
-    entries_ = ws.system.start[rows] + (ws.system.block_start.empty() ? 0 : ws.system.block_start[rows]);
-    return fold(step, ws.system);
+    entries_ =
+        rows_system_.start[rows] + (rows_system_.block_start.empty() ? 0 : rows_system_.block_start[rows]);
+    return fold(step, rows_system_);
 }
 
 }  // namespace unravel::tool

@@ -3,7 +3,7 @@
 #include <chrono>
 
 #include "sim/run/simulate.hpp"
-#include "sim/step/stage.hpp"
+#include "sim/step/trace.hpp"
 #include "tool/base/names.hpp"
 #include "tool/bench/folded_system.hpp"
 #include "tool/bench/speed.hpp"
@@ -47,7 +47,9 @@ public:
 
     /// Computes one step by the scene's own integrator and keeps its system for what follows.
     void capture(int threads);
-    const Components& components() const { return simulation_.ws.components; }
+    const Components& components() const { return components_; }
+    const Constraints& constraints() const { return constraints_; }
+    const StepCouplings& couplings() const { return couplings_; }
     std::uint32_t constrained() const { return constrained_; }
 
     struct Solve {
@@ -59,7 +61,7 @@ public:
     /// The same of its largest component alone.
     Solve solve_largest(const SolveOptions& options, int threads);
     /// Rows multiplied by each component in the last solve().
-    const std::vector<ComponentSolve>& solves() const { return simulation_.ws.solves; }
+    const std::vector<ComponentSolve>& solves() const { return solves_; }
     /// Δv of the last solve(), by particle [m/s].
     std::vector<Vec3> solution() const;
     /// The largest component's grid in the last solve(); nothing where it has none.
@@ -77,9 +79,16 @@ private:
     double h_ = 0;
     StepReport report_;
     std::vector<Vec3> guess_;
-    Families families_;
+    // The captured system, and the memory of solving it.
+    StepCouplings couplings_;
     Load load_;
-    Components largest_;
+    double stage_h_ = 0;
+    Components components_, largest_;
+    Constraints constraints_;
+    GridSolves grids_;
+    System rows_system_;
+    SolveWorkspace solve_;
+    std::vector<ComponentSolve> solves_;
     std::uint32_t constrained_ = 0;
     double rows_ = 0, entries_ = 0;
 };

@@ -98,37 +98,42 @@ MemoryRecord account_memory(const Simulation& simulation, double peak) {
     };
     add("stretch and shear springs", bytes(m.springs));
     add("bend springs", bytes(m.bends.i, m.bends.j) + bytes(m.bends.rest, m.bends.stiffness, m.bends.slope));
+    const ForceMemory& f = w.forces.memory;
+    const LinearStage& l = w.linear;
     add("whose springs: adjacency",
-        static_cast<double>(m.spring_adjacency.bytes() + w.bend_adjacency.bytes()));
-    add("air's cells", bytes(w.air_cells.corners, w.air_cells.start, w.air_cells.cells));
+        static_cast<double>(m.spring_adjacency.bytes() + f.bending.adjacency.bytes()));
+    add("air's cells", bytes(f.air.cells.corners, f.air.cells.start, f.air.cells.cells));
     add("mass", bytes(m.mass));
     add("state, and the one before", bytes(simulation.state) + bytes(w.before));
     add("stage: x~, v~, x*, v*",
         bytes(w.stage.own.x, w.stage.own.v, w.stage.own.x_at, w.stage.own.v_at, w.stage.x_linear));
-    add("forces along rows", static_cast<double>(w.rows.bytes()));
-    add("forces of stretch and shear", bytes(w.extension));
-    add("forces of bending and its limit", bytes(w.bend) + bytes(w.bend_limit.slope, w.bend_limit.crossing) +
-                                               bytes(w.implicit_bend.springs) +
-                                               bytes(w.implicit_bend.forces));
-    add("forces of air", bytes(w.air));
-    add("base, drift, impulse and other vectors",
-        bytes(w.ahead, w.drift_from_start, w.corrected, w.friction, w.impulse, w.drift, w.guess, w.dv,
-              w.reaction, w.taut));
-    add("self-collision", bytes(w.self.springs) + bytes(w.self.forces) +
-                              static_cast<double>(w.self.adjacency.bytes()) +
-                              bytes(w.self.candidate_i, w.self.candidate_j, w.self.x_searched,
-                                    w.self.voxel_start, w.self.voxel_particles, w.self.voxel_of));
-    add("components", bytes(w.parent, w.components.label, w.components.order, w.components.start));
-    const double by_rows = row_share(w.system, w.components);
-    const System& A = w.system;
+    add("forces along rows", static_cast<double>(w.forces.rows.bytes()));
+    add("forces of stretch and shear", bytes(f.springs));
+    add("forces of bending and its limit",
+        bytes(f.bending.force) + bytes(f.bending.limit.slope, f.bending.limit.crossing) +
+            bytes(f.bending.implicit.springs) + bytes(f.bending.implicit.forces));
+    add("forces of air", bytes(f.air.force));
+    add("forces, drift, impulse and other vectors",
+        bytes(w.forces.pushes, w.forces.sum, w.forces.taut, w.forces.ahead, w.contact.corrected,
+              w.contact.friction, w.contact.reaction, l.impulse, l.drift, l.drift_from_start, l.predicted,
+              l.guess, l.dv));
+    add("stitches", bytes(f.stitches.springs) + bytes(f.stitches.forces) +
+                        static_cast<double>(f.stitches.adjacency.bytes()));
+    const SelfCollisionWorkspace& c = f.self_collision;
+    add("self-collision",
+        bytes(c.springs) + bytes(c.forces) + static_cast<double>(c.adjacency.bytes()) +
+            bytes(c.candidate_i, c.candidate_j, c.x_searched, c.voxel_start, c.voxel_particles, c.voxel_of));
+    add("components", bytes(l.parent, l.components.label, l.components.order, l.components.start));
+    const double by_rows = row_share(l.system, l.components);
+    const System& A = l.system;
     add("system by rows: A, b", bytes(A.row_of, A.start, A.entries, A.block_start, A.blocks, A.elsewhere) +
                                     bytes(A.stencils_of.start, A.stencils_of.entries, A.stencils_of.columns) +
                                     by_rows * bytes(A.diagonal, A.b));
-    add("solver by rows", bytes(w.solve.x, w.solve.constraint) +
-                              by_rows * (bytes(w.solve.constrained_blocks.inverse, w.solve.blocks.inverse) +
-                                         bytes(w.solve.r, w.solve.p, w.solve.q)));
-    add("systems on the grid", bytes(w.grid_solves));
-    add("their CG vectors", bytes_of_cg(w.grid_solves));
+    add("solver by rows", bytes(l.solve.x, l.solve.constraint) +
+                              by_rows * (bytes(l.solve.constrained_blocks.inverse, l.solve.blocks.inverse) +
+                                         bytes(l.solve.r, l.solve.p, l.solve.q)));
+    add("systems on the grid", bytes(l.grids));
+    add("their CG vectors", bytes_of_cg(l.grids));
     add("measuring", bytes(w.measure.strain, w.measure.partials));
     if (n < least_particles) return record;
     record.peak = peak / n;

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "sim/model/effects.hpp"
 #include "sim/run/simulate.hpp"
 #include "sim/scene_file/load.hpp"
-#include "sim/step/choose_integrator.hpp"
 #include "sim/step/explicit_limit.hpp"
+#include "sim/step/plan_text.hpp"
+#include "sim/terms/effects.hpp"
 #include "tool/base/options.hpp"
 #include "tool/base/progress.hpp"
 #include "tool/picture/view.hpp"
@@ -68,6 +68,8 @@ int command_check(const Options& options) {
     BendLimit limit;
     limit_bend(simulation.model.bends, simulation.model.mass, scene.solver.step, limit);
 
+    const StepPlan& plan = plan_step(simulation.model, simulation.options, scene.solver.step, simulation.ws);
+
     if (options.json) {
         nlohmann::ordered_json json{{"scene", scene.name},
                                     {"particles", simulation.model.size()},
@@ -78,6 +80,7 @@ int command_check(const Options& options) {
                                     {"estimated_picture_seconds", pictures},
                                     {"bend_springs_limited", limit.limited}};
         for (const Effect& e : effects) json["effects"][e.name] = {{"on", e.on}, {"because", e.because}};
+        json["plan"] = plan_json(plan);
         fmt::print("{}\n", json.dump(2));
         return exit_done;
     }
@@ -90,15 +93,7 @@ int command_check(const Options& options) {
                scene.solver.step);
     fmt::print("  about {:.0f} MB of memory, on one core {} of simulation and {} of pictures\n",
                n * bytes_per_particle / 1e6, duration_text(seconds), duration_text(pictures));
-    if (scene.solver.integrator == Integrator::automatic) {
-        const IntegratorCosts costs =
-            count_costs(simulation.model, simulation.options, scene.solver.step, simulation.ws);
-        fmt::print(
-            "  auto takes {}: explicit would need {} substeps, about {:.2g} us per particle and step against "
-            "{:.2g}\n",
-            costs.cheaper() == Integrator::explicit_ ? "explicit substeps" : "adaptive-imex", costs.substeps,
-            1e-3 * costs.explicit_cost, 1e-3 * costs.coupled_cost);
-    }
+    for (const auto& [name, words] : plan_words(plan)) fmt::print("  {:<19} {}\n", name, words);
     for (const Effect& e : effects)
         fmt::print("  {:<15} {} because {}\n", e.name, e.on ? "on, " : "off,", e.because);
     if (limit.limited > 0) {

@@ -5,6 +5,7 @@
 #include "base/whole_file.hpp"
 #include "render/png.hpp"
 #include "sim/scene_file/load.hpp"
+#include "sim/step/plan_text.hpp"
 #include "tool/base/options.hpp"
 #include "tool/inspect/numbers.hpp"
 #include "tool/inspect/page.hpp"
@@ -23,8 +24,10 @@ void print_step(const InspectedStep& step) {
     fmt::print("  {} components, the largest of {} particles; {} fully and {} partly constrained\n",
                r.components, r.largest, r.constrained, r.partly);
     fmt::print("  springs: {} implicit, {} explicit, {} inactive\n", r.implicit, r.explicit_, r.inactive);
-    fmt::print("  {} CG iterations, at most {} in one; {} RVMs\n\n", r.cg_iterations, r.cg_iterations_max,
+    fmt::print("  {} CG iterations, at most {} in one; {} RVMs\n", r.cg_iterations, r.cg_iterations_max,
                r.rvm);
+    for (const auto& [name, words] : plan_words(step.trace().plan)) fmt::print("  {:<19} {}\n", name, words);
+    fmt::print("\n");
     fmt::print("  {:>6} {:>10} {:>9} {:>9} {:>11} {:>9} {:>9}\n", "id", "particles", "boundary", "springs",
                "iterations", "RVMs", "residual");
     for (std::size_t k = 0; k < std::min(step.components.size(), rows_on_terminal); ++k) {

@@ -86,14 +86,18 @@ Plot kappa_histogram(const InspectedStep& step) {
 }
 
 std::vector<Pattern> step_patterns(const InspectedStep& step) {
-    const StepWorkspace& ws = step.simulation.ws;
+    const StepTrace trace = step.trace();
+    // The cloths' own springs come first.
     std::vector<std::array<std::uint32_t, 2>> extra;
-    for (std::size_t s = 0; s < ws.self.springs.size(); ++s) {
-        if (ws.self.forces.state[s] == SpringState::implicit)
-            extra.push_back({ws.self.springs.i[s], ws.self.springs.j[s]});
+    for (const SpringFamily& family : std::span(trace.couplings.springs).subspan(1)) {
+        for (std::size_t s = 0; s < family.springs->size(); ++s) {
+            if (family.forces->state[s] == SpringState::implicit)
+                extra.push_back({family.springs->i[s], family.springs->j[s]});
+        }
     }
     const Pattern assembled = step_pattern(step.simulation.model, step.record.springs, extra);
-    return {implicit_pattern(step.simulation.model), assembled, reordered_pattern(assembled, ws.components)};
+    return {implicit_pattern(step.simulation.model), assembled,
+            reordered_pattern(assembled, trace.components)};
 }
 
 std::vector<Figure> step_figures(const InspectedStep& step) {

@@ -9,28 +9,6 @@
 
 namespace unravel::tool {
 
-namespace {
-
-// The step gathers forces by particle; what each spring put in is evaluated again.
-std::vector<Vec3> forces_of(const InspectedStep& step) {
-    const Simulation& simulation = step.simulation;
-    const StepWorkspace& ws = simulation.ws;
-    const StepOptions& options = simulation.options;
-    const Integrator used = options.integrator == Integrator::automatic ? ws.chosen : options.integrator;
-    const Splitting splitting = scheme_of(used).splitting(options.threshold);
-    const bool coupled = used != Integrator::explicit_;  // a swept step leaves no stage behind
-    const std::span<const Vec3> x = coupled ? ws.stage.x_at : std::span<const Vec3>(step.before.x),
-                                v = coupled ? ws.stage.v_at : std::span<const Vec3>(step.before.v);
-    ExtensionForces forces;
-    extension_forces(simulation.model.springs, simulation.model.mass, x, v, step.report.h, splitting,
-                     options.activation_band, forces,
-                     coupled ? std::span<const std::uint8_t>(ws.taut) : std::span<const std::uint8_t>(),
-                     coupled ? std::span<const Vec3>(ws.ahead) : std::span<const Vec3>());
-    return forces.force;
-}
-
-}  // namespace
-
 InspectedStep inspect_step(const Scene& scene, const RunFolder& folder, int frame, int step) {
     InspectedStep out;
     out.frame = frame;
@@ -64,12 +42,12 @@ InspectedStep inspect_step(const Scene& scene, const RunFolder& folder, int fram
     out.colors = colors.assign(out.record.component, edges);
     out.components =
         component_table(model, out.record.component, out.record.springs, out.record.solves, out.colors);
-    out.spring_force = forces_of(out);
+    out.spring_force = spring_forces(model, out.trace());
     const ExtensionSprings& springs = model.springs;
     out.kappa.resize(springs.size());
     for (std::size_t s = 0; s < springs.size(); ++s) {
-        const double lighter = std::min(model.mass[springs.i[s]], model.mass[springs.j[s]]);
-        out.kappa[s] = kappa(out.report.h, 1 / lighter, springs.stiffness[s], springs.damping[s]);
+        out.kappa[s] = kappa_between(out.report.h, model.mass[springs.i[s]], model.mass[springs.j[s]],
+                                     springs.stiffness[s], springs.damping[s]);
     }
     return out;
 }

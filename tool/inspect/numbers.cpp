@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "sim/linear/system.hpp"
-#include "sim/step/stage.hpp"
+#include "sim/step/plan_text.hpp"
 #include "tool/base/exit.hpp"
 
 namespace unravel::tool {
@@ -68,6 +68,7 @@ Json step_numbers(const InspectedStep& step) {
               {"converged", r.converged},
               {"max_strain", r.max_strain},
               {"state_hash", fmt::format("{:016x}", state_hash(step.record.state))}};
+    json["plan"] = plan_json(step.trace().plan);
     json["component_list"] = Json::array();
     for (const ComponentRow& row : step.components) {
         json["component_list"].push_back(
@@ -112,11 +113,10 @@ Json particle_numbers(const InspectedStep& step, std::int64_t particle) {
     const ClothModel& model = step.simulation.model;
     require_index(particle, model.size(), "particle");
     const auto p = static_cast<std::uint32_t>(particle);
-    const StepWorkspace& ws = step.simulation.ws;
+    const StepTrace trace = step.trace();
     // Parts of the step may have been solved without being assembled.
     System system;
-    assemble({families_of(model, ws), ws.stencils}, {model.mass, ws.impulse, ws.drift}, ws.components,
-             ws.constraints, ws.stage.h, system);
+    assemble(trace.couplings, trace.load, trace.components, trace.constraints, trace.h, system);
     const std::uint32_t row = system.row_of[p];
     Json json{{"particle", p},
               {"place", place_json(model, p)},
@@ -133,13 +133,11 @@ Json particle_numbers(const InspectedStep& step, std::int64_t particle) {
               {"coupled_particles", Json::array()},
               {"contacts", Json::array()},
               {"springs", Json::array()}};
-    if (const Constraint* c = ws.constraints.find(p)) {
+    if (const Constraint* c = trace.constraints.find(p)) {
         json["constraint"] = {{"S", matrix_json(c->S)}, {"z", vector_json(c->z)}};
     }
     for (std::uint32_t e = system.start[row]; e < system.start[row + 1]; ++e)
-        json["coupled_particles"].push_back(ws.components.order[system.entries[e].column]);
-    for (const System::Block& block : system.blocks_of(row))
-        json["coupled_particles"].push_back(ws.components.order[block.column]);
+        json["coupled_particles"].push_back(trace.components.order[system.entries[e].column]);
     for (const Contact& c : step.record.state.contacts) {
         if (c.particle != p || c.force < 0) continue;
         json["contacts"].push_back(

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/whole_file.hpp"
-#include "sim/model/effects.hpp"
 #include "sim/scene_file/load.hpp"
+#include "sim/terms/effects.hpp"
 #include "tool/base/progress.hpp"
 #include "tool/report/html.hpp"
 #include "tool/report/page_files.hpp"
@@ -96,6 +96,18 @@ PageFacts page_facts(const Json& run) {
         for (const Json& line : run["encoder"]) say("encoder", line.get<std::string>());
     }
     if (run.contains("wall_seconds")) say("time in all", duration_text(run["wall_seconds"].get<double>()));
+    // As plan_json() has them (sim/step/plan_text.hpp).
+    if (run.contains("plan")) {
+        const Json& plan = run["plan"];
+        const auto word = [](const Json& of, const char* key) { return of.value(key, std::string()); };
+        say("integrator", word(plan, "integrator") + ": " + word(plan, "integrator_because"));
+        say("steps", word(plan, "steps") + ": " + word(plan, "steps_because"));
+        for (const Json& cloth : plan.value("cloths", Json::array())) {
+            say(("cloth " + word(cloth, "name")).c_str(),
+                fmt::format("forces by the {} path: {}; solver: {}", word(cloth, "path"),
+                            word(cloth, "because"), word(cloth, "solver")));
+        }
+    }
     return facts;
 }
 

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 
-#include "sim/model/effects.hpp"
+#include "sim/step/plan_text.hpp"
+#include "sim/terms/effects.hpp"
 #include "tool/base/machine.hpp"
 #include "tool/base/version.hpp"
 
@@ -88,6 +89,7 @@ Json run_json(const Scene& scene, const Simulation& simulation, const RunSource&
     for (const Effect& effect : list_effects(scene)) {
         json["effects"][effect.name] = {{"on", effect.on}, {"because", effect.because}};
     }
+    json["plan"] = plan_json(simulation.ws.plan.step);
     json["totals"] = totals(reports, simulation.model.size());
     for (const std::uint64_t hash : source.hashes())
         json["state_hashes"].push_back(fmt::format("{:016x}", hash));

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "sim/scene/random.hpp"
-#include "sim/step/solve_components.hpp"
+#include "sim/step/trace.hpp"
 #include "tests/sim/scenes.hpp"
 
 using namespace unravel;
@@ -247,7 +247,7 @@ TEST_CASE("steps solved on grids follow those solved by rows, several cloths at 
             const StepReport report =
                 step(simulation.model, simulation.options, 0.005, simulation.state, simulation.ws);
             CHECK(report.converged);
-            grids = std::max(grids, simulation.ws.grid_solves.plan.on_grid.size());
+            grids = std::max(grids, trace_of(simulation.model, simulation.ws).grids.plan.on_grid.size());
         }
         CHECK((grids > 0) == (kind != Preconditioner::constrained_block));
         return simulation.state.x;

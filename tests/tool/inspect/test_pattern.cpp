@@ -49,10 +49,10 @@ TEST_CASE("the implicit scheme's pattern has a block per particle and two per co
 
 TEST_CASE("the step's pattern is that of the system which was solved", "[inspect]") {
     const Simulation simulation = draped();
-    const System& A = simulation.ws.system;
-    const Components& components = simulation.ws.components;
+    const System& A = simulation.ws.linear.system;
+    const Components& components = simulation.ws.linear.components;
     REQUIRE(components.count() > 1);
-    const Pattern assembled = step_pattern(simulation.model, simulation.ws.extension.state, {});
+    const Pattern assembled = step_pattern(simulation.model, simulation.ws.forces.memory.springs.state, {});
     const Pattern reordered = reordered_pattern(assembled, components);
     Entries solved;
     const std::uint32_t rows = components.start.back();
@@ -66,9 +66,10 @@ TEST_CASE("the step's pattern is that of the system which was solved", "[inspect
 
 TEST_CASE("every block of the reordered pattern lies within its component", "[inspect]") {
     const Simulation simulation = draped();
-    const Pattern reordered = reordered_pattern(
-        step_pattern(simulation.model, simulation.ws.extension.state, {}), simulation.ws.components);
-    REQUIRE(reordered.blocks.size() == simulation.ws.components.count());
+    const Pattern reordered =
+        reordered_pattern(step_pattern(simulation.model, simulation.ws.forces.memory.springs.state, {}),
+                          simulation.ws.linear.components);
+    REQUIRE(reordered.blocks.size() == simulation.ws.linear.components.count());
     std::vector<std::size_t> owner(reordered.rows, reordered.blocks.size());
     for (std::size_t c = 0; c < reordered.blocks.size(); ++c) {
         for (std::uint32_t row = reordered.blocks[c][0]; row < reordered.blocks[c][1]; ++row) owner[row] = c;

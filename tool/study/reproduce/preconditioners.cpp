@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/step/trace.hpp"
 #include "tool/study/reproduce/claims.hpp"
 
 namespace unravel::tool {
@@ -49,11 +50,11 @@ Iterations measure(const Scene& scene, double from, int systems) {
         if (!taken_here) continue;
         ++taken;
         out.partly += report.partly / out.particles;
+        const StepTrace trace = trace_of(simulation.model, simulation.ws);
         for (std::size_t p = 0; p < preconditioners.size(); ++p) {
             SolveOptions options = simulation.options.solve;
             options.preconditioner = preconditioners[p].first;
-            solve(simulation.ws.system, simulation.ws.components, simulation.ws.constraints, guess, options,
-                  ws, solves);
+            solve(trace.system, trace.components, trace.constraints, guess, options, ws, solves);
             out.mean[p] += solves.front().iterations;
         }
     }

@@ -11,6 +11,7 @@
 #include "sim/scene_file/load.hpp"
 #include "sim/solids/sdf.hpp"
 #include "sim/step/explicit_limit.hpp"
+#include "sim/step/trace.hpp"
 #include "tool/study/stability/step_to_step.hpp"
 
 namespace unravel::tool {
@@ -75,29 +76,12 @@ struct Shadow {
     double first = 0, second = 0;  // J, the terms in h and h²
 };
 
-Shadow shadow_terms(const ClothModel& model, const BendLimit& limit, const ClothState& state, double h) {
-    std::vector<Vec3> force(model.size());
+Shadow shadow_terms(const ClothModel& model, ForceMemory& forces, const ClothState& state, double h) {
+    std::vector<Vec3> force(model.size()), x(model.size());
     // v·f with f at x + ahead v.
     const auto power_at = [&](double ahead) {
-        for (std::size_t p = 0; p < model.size(); ++p) force[p] = model.mass[p] * model.gravity;
-        const auto add = [&](std::uint32_t i, std::uint32_t j, const auto& magnitude) {
-            const Vec3 d = state.x[j] - state.x[i] + ahead * (state.v[j] - state.v[i]);
-            const double length = d.norm();
-            if (length == 0) return;
-            const Vec3 f = magnitude(length) / length * d;
-            force[i] += f;
-            force[j] -= f;
-        };
-        const ExtensionSprings& springs = model.springs;
-        for (std::size_t s = 0; s < springs.size(); ++s) {
-            add(springs.i[s], springs.j[s],
-                [&](double l) { return std::max(0.0, springs.stiffness[s] * (l - springs.rest[s])); });
-        }
-        const BendSprings& bends = model.bends;
-        for (std::size_t s = 0; s < bends.size(); ++s) {
-            add(bends.i[s], bends.j[s],
-                [&](double l) { return bend_force(l, bends.rest[s], bends.stiffness[s], limit.slope[s]); });
-        }
+        for (std::size_t p = 0; p < x.size(); ++p) x[p] = state.x[p] + ahead * state.v[p];
+        conservative_forces(model, x, forces, force);
         double power = 0;
         for (std::size_t p = 0; p < model.size(); ++p) power += force[p].dot(state.v[p]);
         return power;
@@ -116,12 +100,11 @@ Shadow shadow_terms(const ClothModel& model, const BendLimit& limit, const Cloth
 // most that it can have been.
 class EnergyWatch {
 public:
-    EnergyWatch(const Scene& scene, Simulation& simulation, bool swing) : swing_(swing) {
+    EnergyWatch(const Scene& scene, const Simulation& simulation, bool swing) : swing_(swing) {
         StepReport start;
         MeasureWorkspace scratch;
-        limit_bend(simulation.model.bends, simulation.model.mass, scene.solver.step,
-                   simulation.ws.bend_limit);
-        measure(simulation.model, simulation.ws.bend_limit, simulation.state, scratch, start);
+        prepare_terms(simulation.model, scene.solver.step, forces_);
+        measure(simulation.model, forces_, simulation.state, scratch, start);
         scale_ = energy_scale(simulation, start);
         least_ = start.kinetic + start.potential;
         lags_ = scene.solver.integrator == Integrator::explicit_;
@@ -129,10 +112,12 @@ public:
     /// Largest rise so far, over the energy that there is.
     double see(const Simulation& simulation, const StepReport& report) {
         double energy = report.kinetic + report.potential;
-        const bool swings = swing_ && !simulation.ws.coupled;
+        const bool swings = swing_ && !trace_of(simulation.model, simulation.ws).coupled;
         Shadow shadow;
-        if (lags_ || swings)
-            shadow = shadow_terms(simulation.model, simulation.ws.bend_limit, simulation.state, report.h);
+        if (lags_ || swings) {
+            prepare_terms(simulation.model, report.h / report.substeps, forces_);
+            shadow = shadow_terms(simulation.model, forces_, simulation.state, report.h);
+        }
         if (lags_) energy += shadow.first;
         const double corridor = swings ? std::abs(shadow.first) + std::abs(shadow.second) : 0;
         if (scale_ > 0) rise_ = std::max(rise_, (energy - corridor - least_) / scale_);
@@ -143,6 +128,7 @@ public:
 private:
     double scale_ = 0, least_ = 0, rise_ = 0;
     bool lags_ = false, swing_ = false;
+    ForceMemory forces_;
 };
 
 void measure_run(const HardCase& hard, const Scene& scene, int frames, Simulation& simulation,

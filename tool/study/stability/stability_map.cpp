@@ -19,10 +19,10 @@ constexpr int fewest_steps = 60;
 
 double largest_kappa(const ClothModel& model, double h) {
     double largest = 0;
-    for (std::size_t s = 0; s < model.springs.stretch_count; ++s) {
-        const double lighter = std::min(model.mass[model.springs.i[s]], model.mass[model.springs.j[s]]);
-        largest =
-            std::max(largest, kappa(h, 1.0 / lighter, model.springs.stiffness[s], model.springs.damping[s]));
+    const ExtensionSprings& springs = model.springs;
+    for (std::size_t s = 0; s < springs.stretch_count; ++s) {
+        largest = std::max(largest, kappa_between(h, model.mass[springs.i[s]], model.mass[springs.j[s]],
+                                                  springs.stiffness[s], springs.damping[s]));
     }
     return largest;
 }

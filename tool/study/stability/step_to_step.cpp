@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <tuple>
 
+#include "sim/step/trace.hpp"
+
 namespace unravel::tool {
 
 StepToStep::Shares StepToStep::next(const Simulation& simulation) {
     Shares shares;
-    const std::vector<SpringState>& springs = simulation.ws.extension.state;
+    const std::span<const SpringState> springs = trace_of(simulation.model, simulation.ws).springs;
     if (springs.size() == springs_.size() && !springs.empty()) {
         std::size_t turned = 0;
         for (std::size_t s = 0; s < springs.size(); ++s) {
@@ -16,7 +18,7 @@ StepToStep::Shares StepToStep::next(const Simulation& simulation) {
         }
         shares.flicker = static_cast<double>(turned) / static_cast<double>(springs.size());
     }
-    springs_ = springs;
+    springs_.assign(springs.begin(), springs.end());
 
     std::vector<Contact> contacts = simulation.state.contacts;
     std::erase_if(contacts, [](const Contact& c) { return c.force < 0; });  // let go

@@ -1,4 +1,4 @@
-#include "sim/sweep/grid_rows.hpp"
+#include "sim/terms/grid_rows.hpp"
 
 #include <tbb/parallel_for.h>
 

@@ -1,4 +1,4 @@
-#include "sim/sweep/grid_tables.hpp"
+#include "sim/terms/grid_tables.hpp"
 
 #include <algorithm>
 

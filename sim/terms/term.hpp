@@ -1,0 +1,107 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/forces/stencil.hpp"
+#include "sim/model/model.hpp"
+#include "sim/model/report.hpp"
+#include "sim/terms/effects.hpp"
+
+namespace unravel::sim {
+
+struct ForceMemory;       // sim/terms/terms.hpp
+struct MeasureWorkspace;  // sim/terms/measure.hpp
+struct RowVersion;        // sim/terms/row_version.hpp
+
+/// What scheme and options decide about the forces of a step.
+struct ForceSettings {
+    double h = 0;  ///< s, of the step
+    Splitting splitting;
+    double band = 0;                ///< see extension_forces()
+    bool bend_is_implicit = false;  ///< bend springs get their Jacobian (sim/forces/bend.hpp)
+    friend bool operator==(const ForceSettings&, const ForceSettings&) = default;
+};
+
+/// Where a step takes forces. Spans are (particles) unless said.
+struct ForcesAt {
+    ForceSettings settings;
+    double t = 0, t_end = 0;             ///< s, when the step begins and ends
+    std::span<const Vec3> x, v;          ///< x* [m] and v* [m/s] (sim/integrators/scheme.hpp)
+    std::span<const Vec3> ahead;         ///< where implicit springs are linearised [m]; empty: at x*
+    std::span<const std::uint8_t> taut;  ///< (springs) see extension_forces(); or empty
+    /// Where springs that know no look ahead are evaluated even so: how far particles move from there without
+    /// the solve [m]; empty: as the others'.
+    std::span<const Vec3> drift_from_start;
+    std::span<const Vec3> linearised_at() const { return ahead.empty() ? x : ahead; }
+};
+
+/// What forces couple particles by; the cloths' own springs come first.
+struct StepCouplings {
+    std::vector<SpringFamily> springs;
+    std::vector<Stencils> stencils;
+    operator Couplings() const { return {springs, stencils}; }
+};
+
+/// A force that acts on the cloth: all that a step, its measures, the guard and `check` ask of it. A new one
+/// is its pair of files and its line in sim/terms/terms.hpp; functions that it has no use for stay null.
+///
+/// It either pushes, always explicitly, or acts by springs, which may be implicit and enter the linear
+/// system. What it keeps from call to call, and between steps, is its own member of ForceMemory.
+struct ForceTerm {
+    const char* name;
+    /// Whether a model calls for it: otherwise nothing of it runs, and nothing is allocated.
+    bool (*acts)(const ClothModel& model);
+
+    /// Makes what depends on the size of a step, where it isn't there already.
+    void (*prepare)(const ClothModel& model, double h, ForceMemory& memory) = nullptr;
+
+    /// A force that pushes: adds it, (particles) [N]. Evaluated where a step begins, and kept for all of the
+    /// step.
+    void (*push)(const ClothModel& model, const ForcesAt& at, ForceMemory& memory,
+                 std::span<Vec3> force) = nullptr;
+
+    /// A force by springs: evaluates them at (x*, v*), with their Jacobians where they are implicit; then
+    /// adds their forces, (particles) [N]; then hands those that may be implicit to the linear system.
+    void (*evaluate)(const ClothModel& model, const ForcesAt& at, ForceMemory& memory) = nullptr;
+    void (*add)(const ClothModel& model, const ForceMemory& memory, std::span<Vec3> force) = nullptr;
+    void (*couple)(const ClothModel& model, const ForcesAt& at, const ForceMemory& memory,
+                   StepCouplings& out) = nullptr;
+    /// Whether the settings may make some of its springs implicit; null: never.
+    bool (*may_be_implicit)(const ForceSettings& settings) = nullptr;
+
+    /// The same force along the rows of grids, which pushes or splits springs; null: a cloth on which it acts
+    /// takes the general path.
+    const RowVersion* rows = nullptr;
+    /// Rows do without its own version, because what moves them adds it by itself.
+    bool part_of_rows = false;
+
+    /// Adds its energy at x to the report's potential [J], and fills in what else a report tells of it.
+    void (*measure)(const ClothModel& model, std::span<const Vec3> x, const ForceMemory& memory,
+                    MeasureWorkspace& ws, StepReport& report) = nullptr;
+    /// Its springs hold energy that is not measured, so that energy may seem to come from nowhere.
+    bool hides_energy = false;
+    /// Whether it may put energy in; null: it only takes, or gives back what it holds.
+    bool (*feeds)(const ClothModel& model) = nullptr;
+    /// Fills in what a report tells of the springs as they were evaluated.
+    void (*count)(const ForceMemory& memory, StepReport& report) = nullptr;
+    /// The stage that its time belongs to.
+    double StageTimes::*time = &StageTimes::forces;
+
+    /// What `check` and run.json say of it, on or off, by effects of their own.
+    void (*effects)(const Scene& scene, std::vector<Effect>& effects) = nullptr;
+};
+
+/// Adds the forces of springs on their ends, (springs) [N] on the lower-numbered one: to each particle in the
+/// order of its springs.
+inline void add_by_spring(const Adjacency& adjacency, std::span<const Vec3> of_spring,
+                          std::span<Vec3> force) {
+    parallel_each(force.size(), [&](std::size_t p) {
+        Vec3& f = force[p];
+        adjacency.each(static_cast<std::uint32_t>(p), [&](std::uint32_t s, std::uint32_t other) {
+            f += other > p ? of_spring[s] : Vec3(-of_spring[s]);
+        });
+    });
+}
+
+}  // namespace unravel::sim
