@@ -4,8 +4,12 @@
 
 extern "C" {
 #include <libavcodec/avcodec.h>
+#include <libavfilter/avfilter.h>
+#include <libavfilter/buffersink.h>
+#include <libavfilter/buffersrc.h>
 #include <libavformat/avformat.h>
 #include <libavutil/opt.h>
+#include <libavutil/pixdesc.h>
 #include <libswscale/swscale.h>
 }
 
@@ -20,6 +24,7 @@ struct Delete {
     void operator()(AVPacket* p) const { av_packet_free(&p); }
     void operator()(AVIOContext* p) const { avio_close(p); }
     void operator()(SwsContext* p) const { sws_freeContext(p); }
+    void operator()(AVFilterGraph* p) const { avfilter_graph_free(&p); }
 };
 struct DeleteMuxer {
     void operator()(AVFormatContext* p) const { avformat_free_context(p); }
@@ -32,6 +37,7 @@ using Codec = std::unique_ptr<AVCodecContext, Delete>;
 using Frame = std::unique_ptr<AVFrame, Delete>;
 using Packet = std::unique_ptr<AVPacket, Delete>;
 using Io = std::unique_ptr<AVIOContext, Delete>;
+using Graph = std::unique_ptr<AVFilterGraph, Delete>;
 using Scaler = std::unique_ptr<SwsContext, Delete>;
 using Muxer = std::unique_ptr<AVFormatContext, DeleteMuxer>;
 using Demuxer = std::unique_ptr<AVFormatContext, DeleteDemuxer>;

@@ -55,8 +55,9 @@ struct VideoWriter::Parts {
     WholeFile whole;
     av::Io io;
     av::Muxer muxer;
-    AVStream* stream = nullptr;  // the muxer's
-    av::Scaler scaler;           // none for a GIF
+    AVStream* stream = nullptr;                // the muxer's
+    av::Scaler scaler;                         // none for a GIF
+    std::unique_ptr<av::Quantizer> quantizer;  // for a GIF only
     av::Frame frame;
     av::Packet packet;
     int count = 0;
@@ -102,13 +103,15 @@ VideoWriter::Parts::Parts(const std::filesystem::path& file, const VideoSettings
     frame->chroma_location = context.chroma_sample_location;
     frame->sample_aspect_ratio = context.sample_aspect_ratio;
     require_written(av_frame_get_buffer(frame.get(), 0), file, log);
-    if (context.pix_fmt != AV_PIX_FMT_PAL8)
+    if (context.pix_fmt == AV_PIX_FMT_PAL8)
+        quantizer = std::make_unique<av::Quantizer>(context.width, context.height);
+    else
         scaler = av::make_converter(context.width, context.height,
                                     settings.alpha ? AV_PIX_FMT_RGBA : AV_PIX_FMT_RGB0, context.pix_fmt);
 }
 
 void VideoWriter::Parts::convert(const Image& image) {
-    if (!scaler) return av::fill_palette_frame(image, *frame);
+    if (quantizer) return quantizer->fill(image, *frame);
     const std::uint8_t* rows[] = {image.pixels.data()};
     const int row_bytes[] = {4 * image.width};
     sws_scale(scaler.get(), rows, row_bytes, 0, image.height, frame->data, frame->linesize);
