@@ -41,9 +41,6 @@ auto in_order() {
     };
 }
 
-/// The key that names what a pin catches.
-std::string_view pin_target_name(PinTarget);
-
 // Bounds that several tables share. They are wide: what is outside is a slip or a wrong unit.
 inline constexpr double max_length = 1e4;   // m
 inline constexpr double max_time = 3600;    // s

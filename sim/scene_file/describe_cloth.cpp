@@ -9,10 +9,8 @@ namespace unravel::sim {
 
 namespace {
 
-constexpr std::string_view wraps[] = {"open", "tube"};
 constexpr std::string_view corners[] = {"u0v0", "u1v0", "u0v1", "u1v1"};
 constexpr std::string_view edges[] = {"u0", "u1", "v0", "v1"};
-constexpr std::string_view up_axes[] = {"y", "z"};
 constexpr Bounds density_bounds{1e-4, 1000, false, "kg/m²"};
 
 void describe_box(Fields& f, const Key& key, UvBox& box) {
@@ -32,7 +30,7 @@ void describe(Fields& f, MeshFile& mesh, const Key& file) {
     const bool applies = file.applies && has;
     f.number({"mesh_scale", "metres per unit of the mesh's file", false, applies}, mesh.scale,
              {1e-6, 1e6, false, "m"});
-    f.choice({"mesh_up", "which axis of the mesh's file points up", false, applies}, mesh.up, up_axes);
+    f.choice({"mesh_up", "which axis of the mesh's file points up", false, applies}, mesh.up);
     f.text({"mesh_hash", "written by the tool: the file must have this content", false, applies}, mesh.hash,
            TextKind::name);
 }
@@ -61,8 +59,7 @@ void describe(Fields& f, Cloth& cloth) {
     if (const MaterialPreset* preset = f.reading() ? find_preset(cloth.material.preset) : nullptr)
         cloth.density = preset->density;
     f.number({"density", "kg/m²; default: the material preset's, else 0.2"}, cloth.density, density_bounds);
-    f.choice({"wrap", "\"tube\": closed along u, for sleeves; of grids only", false, grid}, cloth.wrap,
-             wraps);
+    f.choice({"wrap", "\"tube\": closed along u, for sleeves; of grids only", false, grid}, cloth.wrap);
     if (f.sound("particles") && f.sound("wrap") && cloth.wrap == Wrap::tube && cloth.particles[0] < 3)
         f.problem("particles", "a tube of fewer than 3 particles around", "make the first number 3 or more");
     f.vector({"center", "m"}, cloth.center, position_bounds);
@@ -84,11 +81,10 @@ void describe(Fields& f, Cloth& cloth) {
             std::vector<std::string> names{pin.name};
             describe(g, pin, names);
             if (g.reading() && grid) check_pin(f, g, cloth, pin, names);
-            if (g.says(pin_target_name(pin.target)) && mesh != (pin.target >= PinTarget::group))
-                g.problem(
-                    pin_target_name(pin.target),
-                    fmt::format("a pin by '{}' of a {}", pin_target_name(pin.target), mesh ? "mesh" : "grid"),
-                    mesh ? "say group or within" : "say corner, edge, particles, box or disc");
+            if (g.says(word_of(pin.target)) && mesh != (pin.target >= PinTarget::group))
+                g.problem(word_of(pin.target),
+                          fmt::format("a pin by '{}' of a {}", word_of(pin.target), mesh ? "mesh" : "grid"),
+                          mesh ? "say group or within" : "say corner, edge, particles, box or disc");
             for (const std::string& name : names) {
                 pins.push_back(pin);
                 pins.back().name = name;
@@ -173,15 +169,10 @@ void describe(Fields& f, Pin& pin, std::vector<std::string>& names) {
         if (f.says("box")) pin.target = PinTarget::box;
         if (f.says("disc")) pin.target = PinTarget::disc;
     }
-    f.place(pin.place, pin_target_name(pin.target));
+    f.place(pin.place, word_of(pin.target));
     f.list({"motion", "keyframes: displacement from, and rotation about the centre of, the pinned particles"},
            pin.motion, ListForm::inline_tables, in_order<Keyframe>());
     f.optional_number({"release", "s, when it lets go; absent: never"}, pin.release, time_bounds);
-}
-
-std::string_view pin_target_name(PinTarget target) {
-    constexpr std::string_view names[] = {"corner", "edge", "particles", "box", "disc", "group", "within"};
-    return names[static_cast<int>(target)];
 }
 
 void describe(Fields& f, Keyframe& key) {

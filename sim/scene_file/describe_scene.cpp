@@ -2,20 +2,6 @@
 
 namespace unravel::sim {
 
-namespace {
-
-// In the order of the enums in scene.hpp.
-constexpr std::string_view integrators[] = {"explicit",      "implicit", "newton",         "imex",
-                                            "adaptive-imex", "bdf2",     "adaptive-imex2", "auto"};
-constexpr std::string_view preconditioners[] = {"none",      "diagonal",   "block", "constrained-block",
-                                                "ssor",      "ic0",        "auto",  "stencil-block",
-                                                "multigrid", "aggregation"};
-
-constexpr std::string_view bend_treatments[] = {"scheme", "explicit"};
-constexpr std::string_view activations[] = {"start", "predicted", "resolve", "ahead"};
-
-}  // namespace
-
 void describe(Fields& f, Scene& scene) {
     f.table({"clip", "what is recorded"}, [&](Fields& g) { describe(g, scene.clip); });
     f.vector({"gravity", "m/s², acceleration of free fall; [0, 0, 0] switches it off"}, scene.gravity,
@@ -42,7 +28,7 @@ void describe(Fields& f, Clip& clip) {
 }
 
 void describe(Fields& f, Solver& solver) {
-    f.choice({"integrator", "time stepping method"}, solver.integrator, integrators);
+    f.choice({"integrator", "time stepping method"}, solver.integrator);
     f.fraction({"step",
                 "a whole part of a frame [s]; a number or a fraction such as \"1/240\"; default: the largest "
                 "up to 1/240"},
@@ -51,18 +37,18 @@ void describe(Fields& f, Solver& solver) {
               solver.substeps, 0, 1'000'000);
     f.number({"threshold", "springs with (h/m)(k h + 2 k_d) up to this are handled explicitly"},
              solver.threshold, {0, 1e9});
-    f.choice({"preconditioner", "of the conjugate gradients"}, solver.preconditioner, preconditioners);
+    f.choice({"preconditioner", "of the conjugate gradients"}, solver.preconditioner);
     f.number({"tolerance", "relative preconditioned residual at which a solve ends"}, solver.tolerance,
              {1e-15, 0.5});
     f.integer({"max_iterations", "of the conjugate gradients, per component"}, solver.max_iterations, 1,
               10'000'000);
     f.flag({"decompose", "solve each component of implicitly coupled particles by itself"}, solver.decompose);
     f.choice({"bend", "bend springs as the integrator has them (implicit, newton: implicitly), or explicit"},
-             solver.bend, bend_treatments);
+             solver.bend);
     f.choice({"activation",
               "when a slack spring acts: next step, where predicted taut, in a second solve, or as "
               "linearised ahead"},
-             solver.activation, activations);
+             solver.activation);
     f.number({"activation_band", "springs this share below their rest length already get their Jacobian"},
              solver.activation_band, {0, 0.5});
     f.optional_table({"adaptive", "step size chosen while running; absent: fixed"}, solver.adaptive,

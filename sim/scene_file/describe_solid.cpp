@@ -4,7 +4,6 @@ namespace unravel::sim {
 
 namespace {
 
-constexpr std::string_view shapes[] = {"plane", "sphere", "box", "cylinder", "capsule", "mesh"};
 constexpr Bounds length_bounds{1e-4, 1000, false, "m"};
 constexpr Bounds friction_bounds{0, 100};
 
@@ -30,8 +29,7 @@ void describe(Fields& f, MeshFrames& frames, bool applies) {
 void describe(Fields& f, Solid& solid) {
     f.place(solid.place);
     f.text({"name", "for messages and reports"}, solid.name, TextKind::name);
-    f.choice({"shape", "unrotated, a plane faces up, a cylinder or capsule stands", true}, solid.shape,
-             shapes);
+    f.choice({"shape", "unrotated, a plane faces up, a cylinder or capsule stands", true}, solid.shape);
     const Shape shape = solid.shape;
     const bool mesh = shape == Shape::mesh;
     describe(f, solid.mesh,

@@ -2,13 +2,6 @@
 
 namespace unravel::sim {
 
-namespace {
-
-constexpr std::string_view shows[] = {"components", "splitting", "strain", "velocity", "contact"};
-constexpr std::string_view weaves[] = {"plain", "twill", "checks", "stripes", "solid"};
-
-}  // namespace
-
 void describe(Fields& f, Wind& wind) {
     f.place(wind.place);
     f.vector({"velocity", "m/s; zero: still air that resists"}, wind.velocity, speed_bounds);
@@ -62,7 +55,7 @@ void describe(Fields& f, Look& look) {
     f.flag({"show_ground", "draw a ground"}, look.show_ground);
     f.optional_number({"ground_height", "m; default: under the lowest plane or under everything"},
                       look.ground_height, position_bounds);
-    f.choice({"show", "what the colours of the component view tell"}, look.show, shows);
+    f.choice({"show", "what the colours of the component view tell"}, look.show);
     f.number({"show_max", "where the scale ends: strain (1) or velocity (m/s); 0: 0.05, 3"}, look.show_max,
              {0, 1e6});
     f.flag({"legend", "tell in the picture what its colours mean"}, look.legend);
@@ -76,7 +69,7 @@ void describe(Fields& f, Look& look) {
 }
 
 void describe(Fields& f, ClothLook& cloth) {
-    f.choice({"weave", "the pattern of the two yarns"}, cloth.weave, weaves);
+    f.choice({"weave", "the pattern of the two yarns"}, cloth.weave);
     f.text({"front", "\"#rrggbb\", first yarn of the front"}, cloth.front, TextKind::color);
     f.text({"front_second", "\"#rrggbb\", second yarn of the front"}, cloth.front_second, TextKind::color);
     f.text({"back", "\"#rrggbb\""}, cloth.back, TextKind::color);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "sim/scene/scene.hpp"
+#include "sim/scene/words.hpp"
 
 namespace unravel::sim {
 
@@ -82,9 +83,9 @@ public:
     virtual void table(const Key&, const std::function<void(Fields&)>& describe) = 0;
 
     template <class Enum>
-    void choice(const Key& key, Enum& value, std::span<const std::string_view> words) {
+    void choice(const Key& key, Enum& value) {
         int index = static_cast<int>(value);
-        choose(key, index, words);
+        choose(key, index, words_of(value));
         value = static_cast<Enum>(index);
     }
 

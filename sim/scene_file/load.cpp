@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "sim/scene/limits.hpp"
+#include "sim/scene/words.hpp"
 #include "sim/scene_file/check.hpp"
 #include "sim/scene_file/describe.hpp"
 #include "sim/scene_file/override.hpp"
@@ -49,16 +50,11 @@ void complete_names(std::vector<T>& things, Kind&& kind) {
     }
 }
 
-std::string_view shape_name(const Solid& solid) {
-    constexpr std::string_view names[] = {"plane", "sphere", "box", "cylinder", "capsule", "mesh"};
-    return names[static_cast<std::size_t>(solid.shape)];
-}
-
 /// What only a scene without problems gets: names, a camera, a step that divides the frame exactly.
 void complete(Scene& scene, bool says_step) {
     if (scene.cameras.empty()) scene.cameras.emplace_back();
     complete_names(scene.cloths, [](const Cloth&) { return std::string_view("cloth"); });
-    complete_names(scene.solids, shape_name);
+    complete_names(scene.solids, [](const Solid& solid) { return word_of(solid.shape); });
     complete_names(scene.cameras, [](const Camera&) { return std::string_view("camera"); });
     const double steps = 1 / (scene.clip.fps * scene.solver.step);
     const double per_frame = says_step ? std::round(steps) : std::ceil(steps * (1 - step_slack));

@@ -16,8 +16,6 @@
 #include "render/png.hpp"
 #include "render/renderer.hpp"
 #include "sim/run/simulate.hpp"
-#include "sim/scene_file/load.hpp"
-#include "source_dir.hpp"
 #include "tool/picture/clip.hpp"
 #include "tool/picture/view.hpp"
 
@@ -212,19 +210,7 @@ nlohmann::ordered_json stage_json(const FrameStage& stage) {
 
 }  // namespace
 
-int command_bench_frames(const Options& options) {
-    constexpr int frames = 40;
-    const std::filesystem::path file =
-        options.scene.empty() ? std::filesystem::path(UNRAVEL_SCENES) / "drape_sphere.toml" : options.scene;
-    Scene scene = load_scene(file, options.overrides);
-    const std::filesystem::path folder =
-        std::filesystem::temp_directory_path() / fmt::format("unravel_bench_{}", getpid());
-    const FrameBench bench =
-        bench_frames(scene, frames, options.threads, parse_device_choice(options.device), folder);
-    if (!options.json) {
-        fmt::print("{}", frame_bench_text(bench));
-        return exit_done;
-    }
+nlohmann::ordered_json frame_bench_json(const FrameBench& bench) {
     nlohmann::ordered_json json{{"renderer", bench.renderer},
                                 {"encoder", bench.encoder},
                                 {"frames", bench.frames},
@@ -233,8 +219,7 @@ int command_bench_frames(const Options& options) {
                                 {"bound_ms", bench.bound()},
                                 {"together", stage_json(bench.together)}};
     for (const FrameStage& stage : bench.stages) json["stages"].push_back(stage_json(stage));
-    fmt::print("{}\n", json.dump(2));
-    return exit_done;
+    return json;
 }
 
 }  // namespace unravel::tool

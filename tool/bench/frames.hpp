@@ -1,13 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "render/gl_context.hpp"
 #include "sim/scene/scene.hpp"
 #include "tool/base/names.hpp"
-#include "tool/base/options.hpp"
 
 namespace unravel::tool {
 
@@ -37,8 +37,7 @@ FrameBench bench_frames(const Scene& scene, int frames, int threads, const Devic
 /// The same as a table in text.
 std::string frame_bench_text(const FrameBench& bench);
 
-/// `unravel bench --frames [SCENE]`: prints the table of a scene, drape_sphere by default, or its numbers as
-/// JSON.
-int command_bench_frames(const Options& options);
+/// And as JSON.
+nlohmann::ordered_json frame_bench_json(const FrameBench& bench);
 
 }  // namespace unravel::tool

@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "bench/cholmod_solve.hpp"
+#include "tool/base/program.hpp"
 
 namespace unravel::tool {
 
@@ -25,17 +26,19 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// The library that holds bench/cholmod_solve.cpp, beside the program, opened when it is first asked for, so
+// The library that holds bench/cholmod_solve.cpp, opened when it is first asked for, so
 // that nobody else pays for CHOLMOD and its BLAS. Stays open.
 decltype(&unravel_cholmod_solve) cholmod() {
     static const auto found = []() -> decltype(&unravel_cholmod_solve) {
         // One thread, as Eigen has.
         setenv("OPENBLAS_NUM_THREADS", "1", 0);
         setenv("OMP_NUM_THREADS", "1", 0);
-        std::error_code error;
-        const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-        void* library =
-            dlopen((program.parent_path() / "libunravel_cholmod.so").c_str(), RTLD_NOW | RTLD_LOCAL);
+        // Beside the program where that was built, in a folder of its own where it is installed.
+        const std::filesystem::path beside = program_file().parent_path();
+        void* library = nullptr;
+        for (const auto& folder : {beside, beside.parent_path() / "lib" / "unravel"}) {
+            if (!library) library = dlopen((folder / "libunravel_cholmod.so").c_str(), RTLD_NOW | RTLD_LOCAL);
+        }
         return library ? reinterpret_cast<decltype(&unravel_cholmod_solve)>(
                              dlsym(library, "unravel_cholmod_solve"))
                        : nullptr;

@@ -7,15 +7,15 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <thread>
 
 #include "base/whole_file.hpp"
 #include "render/png.hpp"
 #include "render/video.hpp"
 #include "sim/scene_file/load.hpp"
+#include "tool/base/exit.hpp"
 #include "tool/base/interrupt.hpp"
-#include "tool/base/options.hpp"
-#include "tool/cli/render_options.hpp"
+#include "tool/cli/commands.hpp"
+#include "tool/cli/common_options.hpp"
 #include "tool/study/accuracy/accuracy_contrast.hpp"
 #include "tool/study/accuracy/accuracy_points.hpp"
 #include "tool/study/accuracy/accuracy_study.hpp"
@@ -25,6 +25,22 @@
 namespace unravel::tool {
 
 namespace {
+
+struct AccuracyOptions {
+    std::filesystem::path scene, folder;
+    std::vector<std::string> overrides;
+    double budget = 10;   // minutes
+    double error = 1e-3;  // to be borne, of the cloth's diagonal
+    double stiffer = 0;   // also a cloth so many times stiffer; 0: not
+    std::string video = "mp4";
+    std::string device = "auto";
+    int threads = 0;
+    bool force = false;
+    bool reference = false;  // compute it, no point
+    PieceOptions pieces;
+    std::vector<std::string> words;  // the command line as it was written
+    OutputOptions output;
+};
 
 // Share of the budget that the video's two runs may take.
 constexpr double video_share = 0.1;
@@ -47,7 +63,7 @@ std::string caption_of(const AccuracyPoint& point, const AccuracyStudy& study) {
 
 // The cheapest setting within the error beside the most accurate one, as far into the clip as the budget
 // allows. Empty where there is nothing to compare or nothing to draw with.
-std::string make_video(const AccuracyStudy& study, const Options& options, double budget,
+std::string make_video(const AccuracyStudy& study, const AccuracyOptions& options, double budget,
                        const std::filesystem::path& file) {
     const std::vector<const AccuracyPoint*> front = pareto_front(study.points);
     if (front.size() < 2) return "";
@@ -82,7 +98,7 @@ std::string make_video(const AccuracyStudy& study, const Options& options, doubl
 
 // The plots and the page of a study, and what it says in words. False: points had to be left out of it,
 // because they were timed on another processor than most.
-bool conclude(AccuracyStudy& study, const std::filesystem::path& folder, const Options& options) {
+bool conclude(AccuracyStudy& study, const std::filesystem::path& folder, const AccuracyOptions& options) {
     const std::string left_out = leave_out_other_processors(study.points);
     draw(study, CostAxis::time, folder / "accuracy");
     draw(study, CostAxis::rvm, folder / "accuracy_rvm");
@@ -90,7 +106,7 @@ bool conclude(AccuracyStudy& study, const std::filesystem::path& folder, const O
     write_whole_file(folder / "accuracy.html", accuracy_page(study.points, study.reference, scene.name,
                                                              study.window(), scene.clip.fps, options.error));
     if (!left_out.empty()) fmt::print(stderr, "unravel: {}\n", left_out);
-    if (options.quiet || options.json) return left_out.empty();
+    if (!options.output.talks()) return left_out.empty();
     fmt::print("{}\n{}\n", accuracy_table(study.points, study.reference, options.error, scene.clip.fps),
                recommendation(study.points, options.error, study.window(), scene.clip.fps));
     if (study.skipped > 0)
@@ -98,7 +114,7 @@ bool conclude(AccuracyStudy& study, const std::filesystem::path& folder, const O
     return left_out.empty();
 }
 
-nlohmann::ordered_json summary(const AccuracyStudy& study, const Options& options) {
+nlohmann::ordered_json summary(const AccuracyStudy& study, const AccuracyOptions& options) {
     return {{"scene", study.scene.name},
             {"points", study.points.size()},
             {"skipped", study.skipped},
@@ -112,39 +128,40 @@ void print_files(const std::vector<std::filesystem::path>& files) {
     for (const std::filesystem::path& file : files) fmt::print("  {}\n", file.string());
 }
 
-}  // namespace
-
-int command_accuracy(const Options& options) {
+int accuracy(const AccuracyOptions& options) {
     const InterruptWatch watch;
-    const int threads = options.threads > 0
-                            ? options.threads
-                            : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    const int threads = thread_count(options.threads);
     const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(threads));
     const Scene scene = load_scene(options.scene, options.overrides);
-    const std::filesystem::path root = options.output.empty()
+    const std::filesystem::path root = options.folder.empty()
                                            ? std::filesystem::path("output") / (scene.name + "_accuracy")
-                                           : options.output;
+                                           : options.folder;
     const bool film = options.video != "none", contrast = options.stiffer > 0;
     const double whole = 60 * options.budget,
                  each = whole * (film ? 1 - video_share : 1) / (contrast ? 2 : 1);
-    AccuracyBudget budget{each, options.force, options.quiet};
+    AccuracyBudget budget{each, options.force, options.output.quiet};
     budget.after = (film ? video_share * whole : 0) + (contrast ? each : 0);
 
-    if (options.cluster.submit || options.collect || options.point >= 0 || options.reference) {
+    const PieceOptions& pieces = options.pieces;
+    if (!pieces.whole() || options.reference) {
         if (contrast)
             throw UsageError("--stiffer compares two studies on one machine: a cluster takes one at a time");
-        if (options.cluster.submit)
-            return do_on_cluster(options, accuracy_cluster_work(scene, root, options.force));
+        if (pieces.cluster.submit) {
+            ClusterWork work = accuracy_cluster_work(scene, root, options.force);
+            work.words = options.words;
+            work.threads = options.threads == 0;
+            return do_on_cluster(pieces.cluster, options.output, work);
+        }
         if (options.reference)
             return study_reference(scene, root, budget, keep_on) ? exit_done : exit_interrupted;
-        if (options.point >= 0)
-            return time_accuracy_point(scene, root, options.point, keep_on) ? exit_done : exit_interrupted;
+        if (pieces.point >= 0)
+            return time_accuracy_point(scene, root, pieces.point, keep_on) ? exit_done : exit_interrupted;
     }
 
     std::string missing;
-    AccuracyStudy study = options.collect ? collect_accuracy(scene, root, missing)
-                                          : study_accuracy(scene, root, budget, keep_on);
+    AccuracyStudy study = pieces.collect ? collect_accuracy(scene, root, missing)
+                                         : study_accuracy(scene, root, budget, keep_on);
     if (study.points.empty() && missing.empty()) {
         if (keep_on())
             fmt::print(
@@ -180,18 +197,48 @@ int command_accuracy(const Options& options) {
             write_whole_file(root / "soft_and_stiff.html", contrast_page(study, stiff, options.stiffer));
             json["stiffer"] = summary(stiff, options);
             json["soft_and_stiff"] = words;
-            if (!options.quiet && !options.json)
+            if (options.output.talks())
                 fmt::print("{}\n{}\n{}\n", winner_table(study), winner_table(stiff), words);
             files.push_back(root / "soft_and_stiff.html");
         }
     }
-    if (options.json) {
+    if (options.output.json) {
         fmt::print("{}\n", json.dump(2));
-    } else if (!options.quiet) {
+    } else if (!options.output.quiet) {
         print_files(files);
     }
     if (!keep_on()) return exit_interrupted;
     return same_processor ? exit_done : exit_simulation;
+}
+
+}  // namespace
+
+void add_accuracy(CommandLine& line) {
+    const auto [command, o] = line.add(
+        "accuracy", "what accuracy costs in time: integrators, steps, thresholds and tolerances", accuracy);
+    o.words = line.words();
+    command.add_option("SCENE", o.scene, "scene file")->required();
+    command.add_option("-o", o.folder, "folder of the study (default: output/<scene name>_accuracy)");
+    add_overrides(command, o.overrides);
+    command.add_option("--budget", o.budget, "minutes that the study may take")
+        ->check(CLI::Range(0.1, 1e5))
+        ->capture_default_str();
+    command.add_option("--error", o.error, "to be borne, as a share of the cloth's diagonal")
+        ->check(CLI::Range(1e-9, 1.0))
+        ->capture_default_str();
+    command
+        .add_option("--stiffer", o.stiffer,
+                    "the same study of a cloth so many times stiffer, and both side by side")
+        ->check(CLI::Range(1.0, 1e6));
+    command.add_option("--video", o.video, "mp4 of a cheap run beside an accurate one, or none")
+        ->check(CLI::IsMember({"mp4", "none"}))
+        ->capture_default_str();
+    add_device(command, o.device);
+    add_threads(command, o.threads);
+    command.add_flag("--force", o.force, "forget the points of an earlier study in the folder");
+    add_piece_options(command, o.pieces);
+    command.add_flag("--reference", o.reference, "compute the reference, no point")->group("On a cluster");
+    add_output_options(command, o.output);
 }
 
 }  // namespace unravel::tool

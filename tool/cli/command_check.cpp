@@ -11,13 +11,21 @@
 #include "sim/step/explicit_limit.hpp"
 #include "sim/step/plan_text.hpp"
 #include "sim/terms/effects.hpp"
-#include "tool/base/options.hpp"
+#include "tool/base/exit.hpp"
 #include "tool/base/progress.hpp"
+#include "tool/cli/commands.hpp"
+#include "tool/cli/common_options.hpp"
 #include "tool/picture/view.hpp"
 
 namespace unravel::tool {
 
 namespace {
+
+struct CheckOptions {
+    std::filesystem::path scene;
+    std::vector<std::string> overrides;
+    OutputOptions output;
+};
 
 // Rough cost on one 2.4 GHz server core, fitted to the scenes that ship: within a factor of two of each.
 // Seconds per particle and step:
@@ -53,9 +61,7 @@ double round_down(double step) {
     return std::floor(step / unit) * unit;
 }
 
-}  // namespace
-
-int command_check(const Options& options) {
+int check(const CheckOptions& options) {
     const Scene scene = load_scene(options.scene, options.overrides);
     check_textures(scene, options.scene.has_parent_path() ? options.scene.parent_path() : ".");
     Simulation simulation = start_simulation(scene);
@@ -70,7 +76,7 @@ int command_check(const Options& options) {
 
     const StepPlan& plan = plan_step(simulation.model, simulation.options, scene.solver.step, simulation.ws);
 
-    if (options.json) {
+    if (options.output.json) {
         nlohmann::ordered_json json{{"scene", scene.name},
                                     {"particles", simulation.model.size()},
                                     {"frames", scene.clip.frames()},
@@ -112,6 +118,15 @@ int command_check(const Options& options) {
             }());
     }
     return exit_done;
+}
+
+}  // namespace
+
+void add_check(CommandLine& line) {
+    const auto [command, o] = line.add("check", "what is wrong with a scene, or what would run", check);
+    command.add_option("SCENE", o.scene, "scene file")->required();
+    add_overrides(command, o.overrides);
+    add_output_options(command, o.output);
 }
 
 }  // namespace unravel::tool

@@ -7,7 +7,9 @@
 
 #include "render/gl_context.hpp"
 #include "render/video.hpp"
-#include "tool/base/options.hpp"
+#include "tool/base/exit.hpp"
+#include "tool/cli/commands.hpp"
+#include "tool/cli/common_options.hpp"
 
 namespace unravel::tool {
 
@@ -23,9 +25,7 @@ bool any_opens(const std::vector<EncoderVerdict>& encoders, const std::string& e
                        [&](const auto& e) { return e.opens && e.ending == ending; });
 }
 
-}  // namespace
-
-int command_doctor(const Options& options) {
+int doctor(const OutputOptions& options) {
     const std::vector<RendererAttempt> routes = probe_renderers();
     const std::vector<EncoderVerdict> encoders = probe_encoders();
     const bool draws = std::any_of(routes.begin(), routes.end(), [](const auto& r) { return r.usable; });
@@ -64,6 +64,14 @@ int command_doctor(const Options& options) {
                    draws && encodes ? "all that is needed is here" : "something is missing, see above");
     }
     return draws && encodes ? exit_done : exit_no_renderer;
+}
+
+}  // namespace
+
+void add_doctor(CommandLine& line) {
+    const auto [command, o] = line.add(
+        "doctor", "which renderers and encoders this machine has, and how to get what is missing", doctor);
+    add_output_options(command, o);
 }
 
 }  // namespace unravel::tool

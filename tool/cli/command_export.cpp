@@ -2,83 +2,90 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "sim/scene_file/load.hpp"
+#include "base/file_errors.hpp"
 #include "tool/base/interrupt.hpp"
-#include "tool/base/options.hpp"
 #include "tool/base/progress.hpp"
-#include "tool/cli/render_options.hpp"
-#include "tool/export/export.hpp"
-#include "tool/picture/view.hpp"
+#include "tool/cli/commands.hpp"
+#include "tool/cli/common_options.hpp"
+#include "tool/cli/picture_options.hpp"
+#include "tool/export/formats.hpp"
+#include "tool/folder/cached_run.hpp"
 
 namespace unravel::tool {
 
 namespace {
 
-Written export_as(const std::string& format, const ExportSource& source, const std::filesystem::path& folder,
-                  const std::string& name) {
-    if (format == "obj") return export_obj(source, folder);
-    if (format == "pc2") return export_point_cache(source, folder, false);
-    if (format == "mdd") return export_point_cache(source, folder, true);
-    if (format == "glb") return export_glb(source, folder, name);
-    ComponentColors colors;
-    const auto edges = drawn_edges(source.model);
-    return export_ply(source, folder,
-                      [&](const FrameRecord& record) { return colors.assign(record.component, edges); });
+struct ExportOptions {
+    std::filesystem::path run, folder;
+    std::string format, frames;
+    OutputOptions output;
+};
+
+const ExportFormat& format_of(const std::string& word) {
+    const std::span<const ExportFormat> formats = export_formats();
+    return *std::ranges::find(formats, word, &ExportFormat::word);  // the command line takes no others
 }
 
-}  // namespace
+std::vector<std::string> format_words() {
+    std::vector<std::string> words;
+    for (const ExportFormat& format : export_formats()) words.emplace_back(format.word);
+    return words;
+}
 
-int command_export(const Options& options) {
+int export_run(const ExportOptions& options) {
     const InterruptWatch watch;
-    const RunFolder run{options.scene};
-    if (!std::filesystem::exists(run.scene())) {
-        throw FolderError(fmt::format(
-            "'{}' holds no run: it has no scene.toml; `unravel run SCENE` makes one", run.root.string()));
-    }
-    Scene scene = load_scene(run.scene());
-    const ClipOptions clip = clip_options_of(options, scene);  // of them --frames
-    const std::uint64_t hash = scene_hash(scene);
-    Placement placement;
-    const ClothModel model = build_model(scene, placement);
-    const int frames = cached_frames(run, scene, hash, model.size(), model.springs.size());
-    if (frames <= clip.first)
-        throw FolderError(fmt::format("'{}' holds {} usable frames, and the first asked for is {}: {}",
-                                      run.root.string(), frames, clip.first,
-                                      why_unusable(run, frames, hash)));
-    ExportSource source{model, {}, clip.first, std::min(clip.last, frames - 1), scene.clip.fps, {}, {}};
-    for (const ClothPatch& patch : model.cloths) source.surfaces.push_back(surface_of(patch));
-    source.read = [&](int frame) {
-        return read_record(run.record(frame), hash, model.size(), model.springs.size());
-    };
-    const std::string own_name = std::filesystem::weakly_canonical(run.root).filename().string();
+    const CachedRun run = open_cached_run(options.run);
+    const FrameRange range = frames_of(options.frames, run.scene);
+    const int frames = run.usable_frames();
+    run.require(range.first, frames);
+    ExportSource source{run.model,          {}, range.first, std::min(range.last, frames - 1),
+                        run.scene.clip.fps, {}, {}};
+    for (const ClothPatch& patch : run.model.cloths) source.surfaces.push_back(surface_of(patch));
+    source.read = [&](int frame) { return run.read(frame); };
+    const std::string own_name = std::filesystem::weakly_canonical(options.run).filename().string();
     const std::string name = own_name.empty() ? "unravel" : own_name;
-    Progress progress(name, source.frames(), options.quiet || options.json);
+    Progress progress(name, source.frames(), !options.output.talks());
     source.done = [&](int frame) {
         progress.show(frame - source.first + 1, 0);
         return !InterruptWatch::requested();
     };
     const std::filesystem::path folder =
-        options.output.empty() ? run.root / "export" / options.format : options.output;
+        options.folder.empty() ? options.run / "export" / options.format : options.folder;
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) throw OutputError(folder, error.value());
-    const Written written = export_as(options.format, source, folder, name);
+    const Written written = format_of(options.format).write(source, folder, name);
     progress.finish();
-    if (options.json) {
+    if (options.output.json) {
         nlohmann::ordered_json json{{"format", options.format},     {"units", "metres"},
                                     {"axes", "right-handed, y up"}, {"fps", source.fps},
                                     {"first", source.first},        {"last", source.last}};
         for (const auto& file : written) json["files"].push_back(file.string());
         fmt::print("{}\n", json.dump(2));
-    } else if (!options.quiet && !written.empty()) {
+    } else if (!options.output.quiet && !written.empty()) {
         fmt::print("  {}{}\n  metres, right-handed, y up; frames {}-{} at {} per second\n",
                    written.front().string(),
                    written.size() > 1 ? fmt::format(" … {}", written.back().filename().string()) : "",
                    source.first, source.last, source.fps);
     }
     return InterruptWatch::requested() ? exit_interrupted : exit_done;
+}
+
+}  // namespace
+
+void add_export(CommandLine& line) {
+    const auto [command, o] =
+        line.add("export", "a cached run's geometry for other programs, frame by frame", export_run);
+    command.add_option("RUN_DIR", o.run, "folder of the run")->required();
+    command.add_option("--format", o.format, "obj, ply, pc2, mdd or glb (docs/geometry.md)")
+        ->check(CLI::IsMember(format_words()))
+        ->required();
+    command.add_option("-o", o.folder, "folder for the files (default: RUN_DIR/export/FORMAT)");
+    add_frames(command, o.frames);
+    add_output_options(command, o.output);
 }
 
 }  // namespace unravel::tool

@@ -6,7 +6,9 @@
 #include "render/png.hpp"
 #include "sim/scene_file/load.hpp"
 #include "sim/step/plan_text.hpp"
-#include "tool/base/options.hpp"
+#include "tool/base/exit.hpp"
+#include "tool/cli/commands.hpp"
+#include "tool/cli/common_options.hpp"
 #include "tool/inspect/numbers.hpp"
 #include "tool/inspect/page.hpp"
 #include "tool/picture/still.hpp"
@@ -14,6 +16,14 @@
 namespace unravel::tool {
 
 namespace {
+
+struct InspectOptions {
+    std::filesystem::path run;
+    int frame = 0, step = 0;                  // the step within the frame; 0: its last
+    std::int64_t particle = -1, spring = -1;  // −1: none asked for
+    std::string device = "auto";
+    OutputOptions output;
+};
 
 constexpr std::size_t rows_on_terminal = 12;
 
@@ -39,16 +49,9 @@ void print_step(const InspectedStep& step) {
         fmt::print("  … and {} smaller ones\n", step.components.size() - rows_on_terminal);
 }
 
-}  // namespace
-
-int command_inspect(const Options& options) {
-    const RunFolder folder{options.scene};
-    if (!std::filesystem::exists(folder.scene())) {
-        throw FolderError(fmt::format(
-            "'{}' holds no run: it has no scene.toml; `unravel run SCENE` makes one", folder.root.string()));
-    }
-    const Scene scene = load_scene(folder.scene());
-    const InspectedStep step = inspect_step(scene, folder, options.frame, options.step);
+int inspect(const InspectOptions& options) {
+    const CachedRun run = open_cached_run(options.run);
+    const InspectedStep step = inspect_step(run, options.frame, options.step);
 
     std::vector<std::pair<std::string, nlohmann::ordered_json>> asked;
     if (options.particle >= 0)
@@ -61,14 +64,14 @@ int command_inspect(const Options& options) {
     std::vector<Image> views;
     std::string no_views;
     try {
-        views = draw_still(scene, step.simulation.model, step.record, step.colors,
+        views = draw_still(run.scene, step.simulation.model, step.record, step.colors,
                            parse_device_choice(options.device));
     } catch (const RendererError& error) {
         no_views = error.what();
     }
     const std::vector<Figure> figures = step_figures(step);
 
-    const std::filesystem::path into = folder.root / "inspect";
+    const std::filesystem::path into = run.folder.root / "inspect";
     std::filesystem::create_directories(into);
     const std::string name = step.step == step.steps ? fmt::format("{:04}", step.frame)
                                                      : fmt::format("{:04}_step{}", step.frame, step.step);
@@ -78,22 +81,39 @@ int command_inspect(const Options& options) {
     }
     const std::filesystem::path page = into / fmt::format("inspect_{}.html", name);
     const std::string run_name =
-        std::filesystem::absolute(folder.root).lexically_normal().filename().string();
+        std::filesystem::absolute(run.folder.root).lexically_normal().filename().string();
     write_whole_file(page, inspect_page(step, run_name, views, no_views, figures, asked));
 
-    if (options.json) {
+    if (options.output.json) {
         nlohmann::ordered_json json = step_numbers(step);
         if (options.particle >= 0) json["particle"] = particle_numbers(step, options.particle);
         if (options.spring >= 0) json["spring"] = spring_numbers(step, options.spring);
         json["page"] = page.string();
         fmt::print("{}\n", json.dump(2));
-    } else if (!options.quiet) {
+    } else if (!options.output.quiet) {
         print_step(step);
         for (const auto& [heading, numbers] : asked) fmt::print("\n{}\n{}\n", heading, numbers.dump(2));
         if (!no_views.empty()) fmt::print("\nno views: {}\n", no_views);
         fmt::print("\n  {}\n", page.string());
     }
     return exit_done;
+}
+
+}  // namespace
+
+void add_inspect(CommandLine& line) {
+    const auto [command, o] =
+        line.add("inspect", "one frame in depth: components, splitting, the matrix", inspect);
+    command.add_option("RUN_DIR", o.run, "folder of the run")->required();
+    command.add_option("--frame", o.frame, "number of the frame, 1 or more")->required();
+    command.add_option("--step", o.step, "step on the way to that frame, 1 or more (default: the last)")
+        ->check(CLI::Range(1, 1000000));
+    command.add_option("--particle", o.particle, "tell all about this particle")
+        ->check(CLI::NonNegativeNumber);
+    command.add_option("--spring", o.spring, "tell all about this stretch or shear spring")
+        ->check(CLI::NonNegativeNumber);
+    add_device(command, o.device);
+    add_output_options(command, o.output);
 }
 
 }  // namespace unravel::tool

@@ -7,12 +7,14 @@
 #include "base/whole_file.hpp"
 #include "sim/run/simulate.hpp"
 #include "sim/run/stats.hpp"
-#include "sim/scene_file/load.hpp"
+#include "tool/base/exit.hpp"
 #include "tool/base/interrupt.hpp"
-#include "tool/base/options.hpp"
 #include "tool/base/progress.hpp"
+#include "tool/cli/commands.hpp"
+#include "tool/cli/common_options.hpp"
 #include "tool/cli/frame_ranges.hpp"
-#include "tool/cli/render_options.hpp"
+#include "tool/cli/picture_options.hpp"
+#include "tool/folder/cached_run.hpp"
 #include "tool/folder/folder_lock.hpp"
 #include "tool/picture/clip.hpp"
 #include "tool/picture/turntable.hpp"
@@ -22,6 +24,16 @@ namespace unravel::tool {
 
 namespace {
 
+struct RenderOptions {
+    std::filesystem::path run, folder;  // the folder for the pictures; empty: the run's
+    std::vector<std::string> overrides;
+    PictureOptions pictures;
+    PieceOptions pieces;
+    int parts = 0;                   // ranges of frames that the work is cut into; 0: chosen
+    std::vector<std::string> words;  // the command line as it was written
+    OutputOptions output;
+};
+
 // What the run left about itself; a run that was killed left nothing, and its page says less.
 nlohmann::ordered_json earlier_run(const RunFolder& folder) {
     nlohmann::ordered_json run = read_run_json(folder);
@@ -29,9 +41,9 @@ nlohmann::ordered_json earlier_run(const RunFolder& folder) {
     return run;
 }
 
-void print_files(const Options& options, const RunFolder& folder, const ClipOptions& clip_options,
+void print_files(const OutputOptions& output, const RunFolder& folder, const ClipOptions& clip_options,
                  const ClipReport& report) {
-    if (options.quiet) return;
+    if (output.quiet) return;
     for (const std::string& video : report.videos) fmt::print("  {}\n", (folder.root / video).string());
     if (!report.videos.empty() || !clip_options.keep_pictures) return;
     for (const ClipView& view : clip_options.views)
@@ -39,50 +51,121 @@ void print_files(const Options& options, const RunFolder& folder, const ClipOpti
 }
 
 // One turn about a frame that stands still; the run's page stays as it is.
-int draw_turntable(const Options& options, const Scene& scene, const ClothModel& model,
-                   const Placement& placement, const std::array<RunFolder, 2>& from_to,
-                   const ClipOptions& clip_options, int frame, std::uint64_t hash) {
-    const auto& [cached, folder] = from_to;
-    const FrameRecord record = read_record(cached.record(frame), hash, model.size(), model.springs.size());
-    Progress progress(scene.name, clip_options.last + 1, options.quiet);
+int draw_turntable(const RenderOptions& options, const CachedRun& run, const Scene& scene,
+                   const RunFolder& folder, const ClipOptions& clip_options, int frame) {
+    const FrameRecord record = run.read(frame);
+    Progress progress(scene.name, clip_options.last + 1, options.output.quiet);
     const FrameSource turn = turntable_source(clip_options, record);
     const FrameSource source = [&]() -> std::optional<FrameRecord> {
         return InterruptWatch::requested() ? std::nullopt : turn();
     };
-    const ClipReport report = make_clip(scene, model, placement, folder, clip_options, source,
+    const ClipReport report = make_clip(scene, run.model, run.placement, folder, clip_options, source,
                                         [&](int done) { progress.show(done + 1, 0); });
     progress.finish();
-    print_files(options, folder, clip_options, report);
+    print_files(options.output, folder, clip_options, report);
     return InterruptWatch::requested() ? exit_interrupted : exit_done;
 }
 
-}  // namespace
+int send(const RenderOptions& options, const Scene& scene, const CachedRun& run, const RunFolder& folder,
+         const ClipOptions& clip_options, const std::vector<FrameRange>& ranges) {
+    ClusterWork work = range_work(ranges, scene, run.folder, folder, clip_options);
+    work.words = options.words;
+    if (options.parts == 0) work.more = {"--parts", std::to_string(ranges.size())};
+    return do_on_cluster(options.pieces.cluster, options.output, work);
+}
 
-int command_render(const Options& options) {
-    const InterruptWatch watch;
-    const RunFolder cached{options.scene};
-    if (!std::filesystem::exists(cached.scene())) {
-        throw FolderError(fmt::format(
-            "'{}' holds no run: it has no scene.toml; `unravel run SCENE` makes one", cached.root.string()));
+// The frames of a clip from a run's cache; what is read on the way goes into the page.
+class CachedFrames {
+public:
+    CachedFrames(const CachedRun& run, const RunFolder& folder)
+        : run_(run), recorder_(run.model, folder.root), reports_(folder.root) {}
+
+    int read() const { return next_; }
+    FrameRecord next() {
+        FrameRecord record = run_.read(next_++);
+        recorder_.see(record);
+        reports_.append(record.reports);
+        return record;
     }
-    Scene scene = load_scene(cached.scene(), options.overrides);
-    const std::uint64_t hash = scene_hash(scene);
-    const Scene as_run = scene;
-    const nlohmann::ordered_json left = earlier_run(cached);
+    const PageRecorder& recorder() const { return recorder_; }
+    // Of all steps that were read, with the times that the run took for them.
+    std::vector<StepReport> reports() const {
+        std::vector<StepReport> reports = reports_.read_all();
+        if (std::filesystem::exists(run_.folder.stats()))
+            take_times(read_whole_text(run_.folder.stats(), largest_stats), reports);
+        return reports;
+    }
+
+private:
+    const CachedRun& run_;
+    int next_ = 0;
+    PageRecorder recorder_;
+    SpooledList<StepReport> reports_;
+};
+
+// The clip's frames, and a page that shows the whole run. `range_only`: the frames of a task, which shares
+// its folder with others and leaves the page to the last of them.
+int draw_clip(const RenderOptions& options, const CachedRun& run, const Scene& scene, const RunFolder& folder,
+              ClipOptions& clip_options, int frames, bool range_only) {
+    const int first = clip_options.first, last = std::min(frames - 1, clip_options.last);
+    Progress progress(scene.name, last - first + 1, options.output.quiet);
+    CachedFrames cached(run, folder);
+    const FrameSource source = [&]() -> std::optional<FrameRecord> {
+        if (cached.read() > last || InterruptWatch::requested()) return std::nullopt;
+        return cached.next();
+    };
+    Previews previews = previews_of(scene, clip_options, folder.root);
+    clip_options.picture = take_previews(previews);
+    const ClipReport report = make_clip(scene, run.model, run.placement, folder, clip_options, source,
+                                        [&](int frame) { progress.show(frame - first + 1, 0); });
+    progress.finish();
+    if (range_only) {
+        if (last < clip_options.last)
+            throw FolderError(
+                fmt::format("'{}' holds no usable frame {}", run.folder.root.string(), last + 1));
+        return InterruptWatch::requested() ? exit_interrupted : exit_done;
+    }
+    // The page shows the whole run, also where only some frames were drawn anew.
+    while (cached.read() < frames) cached.next();
+    nlohmann::ordered_json about = earlier_run(run.folder);
+    about["renderer"] = {{"name", report.renderer}, {"why", report.renderer_summary}};
+    about["encoder"] = report.encoders;
+    write_report_page(scene, run.model, folder, cached.recorder(), cached.reports(), previews,
+                      page_facts(about));
+    print_files(options.output, folder, clip_options, report);
+    if (!options.output.quiet) fmt::print("  {}\n", folder.report().string());
+    if (InterruptWatch::requested()) return exit_interrupted;
+    // A state that is damaged hides the frames from it on: named when all before it are drawn.
+    if (last < clip_options.last && std::filesystem::exists(run.folder.record(frames))) run.read(frames);
+    return exit_done;
+}
+
+int render(const RenderOptions& options) {
+    const InterruptWatch watch;
+    const CachedRun run = open_cached_run(options.run, options.overrides);
+    Scene scene = run.scene;
     // The folder's scene.toml has lost the name that the scene came by.
-    scene.name = left.value("scene", (cached.root / "").parent_path().filename().string());
-    ClipOptions clip_options = clip_options_of(options, scene);
-    clip_options.textures = cached.root;
-    const bool turns = options.turntable > 0;
-    const int still = options.still >= 0 ? options.still : scene.clip.frames() - 1;
-    if (turns) make_turntable(scene, clip_options, options.turntable, still);
-    const RunFolder folder{options.output.empty() ? cached.root : options.output};
-    if (turns && (options.cluster.submit || options.collect || options.point >= 0))
+    scene.name =
+        earlier_run(run.folder).value("scene", (run.folder.root / "").parent_path().filename().string());
+    ClipOptions clip_options = clip_options_of(options.pictures, scene);
+    clip_options.textures = run.folder.root;
+    const bool turns = options.pictures.turntable > 0;
+    const int still = options.pictures.still >= 0 ? options.pictures.still : scene.clip.frames() - 1;
+    if (turns) make_turntable(scene, clip_options, options.pictures.turntable, still);
+    const RunFolder folder{options.folder.empty() ? run.folder.root : options.folder};
+    const PieceOptions& pieces = options.pieces;
+    if (turns && !pieces.whole())
         throw UsageError("--turntable is drawn on one machine: it does not go with --slurm");
-    if (options.cluster.submit) return send_ranges(options, scene, cached, folder, clip_options);
-    const bool range_only = options.point >= 0;
-    if (range_only) narrow_to_range(options, clip_options);
-    if (options.collect) gather_ranges(options, scene, folder, clip_options);
+    const std::vector<FrameRange> ranges = cut_frames(clip_options.first, clip_options.last, options.parts);
+    if (pieces.cluster.submit) return send(options, scene, run, folder, clip_options, ranges);
+    const bool range_only = pieces.point >= 0;
+    if (range_only) {
+        if (static_cast<std::size_t>(pieces.point) >= ranges.size())
+            throw UsageError(
+                fmt::format("--point {}: the ranges end at {}", pieces.point, ranges.size() - 1));
+        narrow_to_range(ranges[static_cast<std::size_t>(pieces.point)], clip_options);
+    }
+    if (pieces.collect) gather_ranges(ranges, scene, folder, clip_options);
     check_clip(scene, folder, clip_options);
     std::filesystem::create_directories(folder.frames());
     // Tasks with other ranges write there at the same time: they own no more than their pictures.
@@ -91,61 +174,31 @@ int command_render(const Options& options) {
         lock.emplace(folder.root);
         remove_partial_files(folder.frames());
     }
+    const int frames = run.usable_frames();
+    run.require(turns ? 0 : clip_options.first, frames);
+    if (turns) return draw_turntable(options, run, scene, folder, clip_options, std::min(still, frames - 1));
+    return draw_clip(options, run, scene, folder, clip_options, frames, range_only);
+}
 
-    Placement placement;
-    const ClothModel model = build_model(scene, placement);
-    const int frames = cached_frames(cached, as_run, hash, model.size(), model.springs.size());
-    if (frames <= (turns ? 0 : clip_options.first)) {
-        throw FolderError(fmt::format("'{}' holds {} usable frames, and the first asked for is {}: {}",
-                                      cached.root.string(), frames, clip_options.first,
-                                      why_unusable(cached, frames, hash)));
-    }
-    if (turns)
-        return draw_turntable(options, scene, model, placement, {cached, folder}, clip_options,
-                              std::min(still, frames - 1), hash);
-    const int last = std::min(frames - 1, clip_options.last);
-    Progress progress(scene.name, last - clip_options.first + 1, options.quiet);
-    int next = 0;
-    PageRecorder recorder(model, folder.root);
-    SpooledList<StepReport> spooled(folder.root);
-    const auto read = [&] {
-        FrameRecord record = read_record(cached.record(next++), hash, model.size(), model.springs.size());
-        recorder.see(record);
-        spooled.append(record.reports);
-        return record;
-    };
-    const FrameSource source = [&]() -> std::optional<FrameRecord> {
-        if (next > last || InterruptWatch::requested()) return std::nullopt;
-        return read();
-    };
-    Previews previews = previews_of(scene, clip_options, folder.root);
-    clip_options.picture = take_previews(previews);
-    const ClipReport report = make_clip(scene, model, placement, folder, clip_options, source,
-                                        [&](int frame) { progress.show(frame - clip_options.first + 1, 0); });
-    progress.finish();
-    if (range_only) {
-        if (last < clip_options.last)
-            throw FolderError(fmt::format("'{}' holds no usable frame {}", cached.root.string(), last + 1));
-        return InterruptWatch::requested() ? exit_interrupted : exit_done;
-    }
-    // The page shows the whole run, also where only some frames were drawn anew.
-    while (next < frames) read();
-    std::vector<StepReport> reports = spooled.read_all();
-    if (std::filesystem::exists(cached.stats()))
-        take_times(read_whole_text(cached.stats(), largest_stats), reports);
-    nlohmann::ordered_json run = left;
-    run["renderer"] = {{"name", report.renderer}, {"why", report.renderer_summary}};
-    run["encoder"] = report.encoders;
-    write_report_page(scene, model, folder, recorder, reports, previews, page_facts(run));
-    print_files(options, folder, clip_options, report);
-    if (!options.quiet) {
-        fmt::print("  {}\n", folder.report().string());
-    }
-    if (InterruptWatch::requested()) return exit_interrupted;
-    // A state that is damaged hides the frames from it on: named when all before it are drawn.
-    if (last < clip_options.last && std::filesystem::exists(cached.record(frames)))
-        read_record(cached.record(frames), hash, model.size(), model.springs.size());
-    return exit_done;
+}  // namespace
+
+void add_render(CommandLine& line) {
+    const auto [command, o] = line.add("render", "pictures and videos from a cached run", render);
+    o.words = line.words();
+    command.add_option("RUN_DIR", o.run, "folder of the run")->required();
+    command.add_option("-o", o.folder, "folder for the pictures (default: the run's own)");
+    add_overrides(command, o.overrides, "key=value of [camera], [look] or clip.size");
+    add_picture_options(command, o.pictures);
+    add_piece_options(command, o.pieces);
+    command.add_option("--parts", o.parts, "ranges that a cluster draws the frames in (default: chosen)")
+        ->check(CLI::Range(1, 1000));
+    command.add_option("--still", o.pictures.still, "this frame alone, without a video")
+        ->check(CLI::NonNegativeNumber);
+    command
+        .add_option("--turntable", o.pictures.turntable,
+                    "seconds of one turn about a frame that stands still: --still, or the last")
+        ->check(CLI::Range(0.1, 600.0));
+    add_output_options(command, o.output);
 }
 
 }  // namespace unravel::tool

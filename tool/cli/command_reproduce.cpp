@@ -5,8 +5,10 @@
 
 #include "base/whole_file.hpp"
 #include "render/png.hpp"
-#include "tool/base/options.hpp"
+#include "tool/base/exit.hpp"
 #include "tool/base/version.hpp"
+#include "tool/cli/commands.hpp"
+#include "tool/cli/common_options.hpp"
 #include "tool/report/html.hpp"
 #include "tool/report/page_files.hpp"
 #include "tool/report/preview.hpp"
@@ -15,6 +17,13 @@
 namespace unravel::tool {
 
 namespace {
+
+struct ReproduceOptions {
+    bool quick = false;
+    std::filesystem::path folder = "output/reproduce";
+    std::string device = "auto";
+    OutputOptions output;
+};
 
 constexpr int reproduced_width = 800;
 
@@ -54,18 +63,16 @@ std::string warnings_html(const std::vector<Claim>& claims, bool quick) {
     return html;
 }
 
-}  // namespace
-
-int command_reproduce(const Options& options) {
+int reproduce(const ReproduceOptions& options) {
     const ReproduceScale scale{options.quick};
     const DeviceChoice device = parse_device_choice(options.device);
-    const std::filesystem::path folder = options.output.empty() ? "output/reproduce" : options.output;
+    const std::filesystem::path& folder = options.folder;
     std::filesystem::create_directories(folder);
     const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, 2);
 
     std::vector<Claim> claims;
     const auto say = [&](const Claim& claim) {
-        if (options.quiet || options.json) return;
+        if (!options.output.talks()) return;
         fmt::print("{}\n  paper: {}\n  here:  {}\n", claim.heading, claim.paper, claim.ours);
         std::fflush(stdout);
     };
@@ -100,11 +107,22 @@ int command_reproduce(const Options& options) {
                                                              {"warnings", warnings},
                                                              {"claims", body}}));
     write_whole_file(folder / "reproduce.json", numbers.dump(2) + "\n");
-    if (options.json)
+    if (options.output.json)
         fmt::print("{}\n", numbers.dump(2));
-    else if (!options.quiet)
+    else if (!options.output.quiet)
         fmt::print("  {}\n", (folder / "report.html").string());
     return exit_done;
+}
+
+}  // namespace
+
+void add_reproduce(CommandLine& line) {
+    const auto [command, o] =
+        line.add("reproduce", "every figure and claim of the paper again, beside ours", reproduce);
+    command.add_flag("--quick", o.quick, "small and short: shows that it works, not what it reaches");
+    command.add_option("-o", o.folder, "folder of the report")->capture_default_str();
+    add_device(command, o.device);
+    add_output_options(command, o.output);
 }
 
 }  // namespace unravel::tool

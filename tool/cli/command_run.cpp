@@ -3,17 +3,15 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include <algorithm>
 #include <chrono>
-#include <thread>
 
 #include "base/whole_file.hpp"
 #include "sim/scene_file/load.hpp"
 #include "sim/step/explicit_limit.hpp"
+#include "tool/base/exit.hpp"
 #include "tool/base/interrupt.hpp"
-#include "tool/base/options.hpp"
 #include "tool/base/progress.hpp"
-#include "tool/cli/render_options.hpp"
+#include "tool/cli/commands.hpp"
 #include "tool/cli/scene_list.hpp"
 #include "tool/folder/folder_lock.hpp"
 #include "tool/picture/clip.hpp"
@@ -24,18 +22,16 @@
 
 namespace unravel::tool {
 
+namespace fs = std::filesystem;
+
 namespace {
 
 // Threads beyond the simulation's own: drawing, writing and encoding wait on other things for much of their
 // time.
 constexpr int pipeline_threads = 3;
 
-int thread_count(const Options& options) {
-    return options.threads > 0 ? options.threads
-                               : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
-
-void print_summary(const Options& options, const RunFolder& folder, const nlohmann::ordered_json& json) {
+void print_summary(const OutputOptions& options, const RunFolder& folder,
+                   const nlohmann::ordered_json& json) {
     if (options.json) {
         fmt::print("{}\n", json.dump(2));
         return;
@@ -54,15 +50,14 @@ void print_summary(const Options& options, const RunFolder& folder, const nlohma
     fmt::print("  {}\n  {}\n", folder.stats().string(), folder.report().string());
 }
 
-int make_run(const Options& options, bool pictures) {
+int make_run(const fs::path& file, const RunOptions& options, bool pictures) {
     const auto begin = std::chrono::steady_clock::now();
     const InterruptWatch watch;
-    Scene scene = load_scene(options.scene, options.overrides);
-    const RunFolder folder{options.output.empty() ? std::filesystem::path("output") / scene.name
-                                                  : options.output};
-    ClipOptions clip_options = clip_options_of(options, scene);
+    Scene scene = load_scene(file, options.overrides);
+    const RunFolder folder{options.folder.empty() ? fs::path("output") / scene.name : options.folder};
+    ClipOptions clip_options = clip_options_of(options.pictures, scene);
     // Relative to nothing would mean that there are none.
-    clip_options.textures = options.scene.has_parent_path() ? options.scene.parent_path() : ".";
+    clip_options.textures = file.has_parent_path() ? file.parent_path() : ".";
     Simulation simulation = start_simulation(scene);
     simulation.options.compare_whole = options.compare_whole;
     if (!options.allow_unstable)
@@ -75,7 +70,7 @@ int make_run(const Options& options, bool pictures) {
     const FolderLock lock(folder.root);
     const std::uint64_t hash = open_run(folder, scene, existing, clip_options.textures);
 
-    const int threads = thread_count(options);
+    const int threads = thread_count(options.threads);
     const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(threads + pipeline_threads));
     const int cached =
@@ -102,7 +97,7 @@ int make_run(const Options& options, bool pictures) {
         }
     };
 
-    Progress progress(scene.name, scene.clip.frames(), options.quiet);
+    Progress progress(scene.name, scene.clip.frames(), options.output.quiet);
     const auto done = [&](int frame) { progress.show(frame + 1, std::min(cached, frame + 1)); };
     std::optional<ClipReport> report;
     const auto conclude = [&](const char* status) {
@@ -110,13 +105,13 @@ int make_run(const Options& options, bool pictures) {
         source.write_stats();
         nlohmann::ordered_json json =
             run_json(scene, simulation, source, threads, status, report ? &*report : nullptr);
-        if (!options.words.empty()) json["command"] = command_of_run(options);
+        json["command"] = command_of_run(options);
         json["wall_seconds"] =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         write_whole_file(folder.run_json(), json.dump(2) + "\n");
         write_report_page(scene, simulation.model, folder, recorder, source.reports(), previews,
                           page_facts(json));
-        print_summary(options, folder, json);
+        print_summary(options.output, folder, json);
     };
     if (pictures) {
         Placement placement;
@@ -134,13 +129,45 @@ int make_run(const Options& options, bool pictures) {
     return InterruptWatch::requested() ? exit_interrupted : exit_done;
 }
 
+int run(const RunOptions& options) {
+    return for_each_scene(
+        options, [](const fs::path& scene, const RunOptions& one) { return make_run(scene, one, true); });
+}
+
+int simulate(const RunOptions& options) {
+    return for_each_scene(
+        options, [](const fs::path& scene, const RunOptions& one) { return make_run(scene, one, false); });
+}
+
+void add_run_options(const CommandLine& line, CLI::App& command, RunOptions& o) {
+    o.words = line.words();
+    command.add_option("SCENE", o.scenes, "scene files, each made into a clip of its own")->required();
+    command.add_option(
+        "-o", o.folder,
+        "folder of the run (default: output/<scene name>); of several scenes, the folder around theirs");
+    add_overrides(command, o.overrides);
+    add_threads(command, o.threads);
+    command.add_flag("--resume", o.resume, "go on from the last frame in the folder");
+    command.add_flag("--force", o.force, "start anew in a folder that holds a run");
+    command.add_flag("--allow-unstable", o.allow_unstable,
+                     "simulate although the step is beyond the limit of the springs handled explicitly");
+    command.add_flag("--compare-whole", o.compare_whole,
+                     "solve each system undecomposed too, and count rvm_whole");
+    add_piece_options(command, o.pieces);
+    add_output_options(command, o.output);
+}
+
 }  // namespace
 
-int command_run(const Options& options) {
-    return for_each_scene(options, [](const Options& one) { return make_run(one, true); });
+void add_run(CommandLine& line) {
+    const auto [command, o] = line.add("run", "simulate, render both views, encode", run);
+    add_run_options(line, command, o);
+    add_picture_options(command, o.pictures);
 }
-int command_simulate(const Options& options) {
-    return for_each_scene(options, [](const Options& one) { return make_run(one, false); });
+
+void add_simulate(CommandLine& line) {
+    const auto [command, o] = line.add("simulate", "simulate only, into a cache", simulate);
+    add_run_options(line, command, o);
 }
 
 }  // namespace unravel::tool

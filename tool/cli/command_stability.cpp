@@ -5,9 +5,11 @@
 #include <algorithm>
 
 #include "base/whole_file.hpp"
+#include "tool/base/exit.hpp"
 #include "tool/base/interrupt.hpp"
-#include "tool/base/options.hpp"
-#include "tool/cli/render_options.hpp"
+#include "tool/base/program.hpp"
+#include "tool/cli/commands.hpp"
+#include "tool/cli/common_options.hpp"
 #include "tool/cluster/cluster.hpp"
 #include "tool/study/stability/hard_case.hpp"
 #include "tool/study/stability/stability_map.hpp"
@@ -18,6 +20,17 @@
 namespace unravel::tool {
 
 namespace {
+
+struct StabilityOptions {
+    std::vector<std::string> cases;  // names, or parts of them; empty: all
+    bool map = false;                // also the (stiffness, step) map
+    std::filesystem::path scenes = shipped_scenes() / "hard", folder = "output/stability";
+    std::string device = "auto";
+    bool pictures = true;
+    PieceOptions pieces;
+    std::vector<std::string> words;  // the command line as it was written
+    OutputOptions output;
+};
 
 bool is_asked_for(const HardCase& hard, const std::vector<std::string>& names) {
     return names.empty() || std::any_of(names.begin(), names.end(), [&](const std::string& name) {
@@ -50,14 +63,15 @@ struct Study {
     }
 };
 
-Study study_of(const Options& options) {
+Study study_of(const StabilityOptions& options) {
     Study study;
-    study.scenes = options.scene.empty() ? "scenes/hard" : options.scene;
-    study.output = options.output.empty() ? "output/stability" : options.output;
+    study.scenes = options.scenes;
+    study.output = options.folder;
     study.cases = read_hard_cases(study.scenes / "cases.toml");
     std::erase_if(study.cases, [&](const HardCase& hard) { return !is_asked_for(hard, options.cases); });
     if (study.cases.empty())
-        throw UsageError("no hard case has such a name; scenes/hard/cases.toml lists them");
+        throw UsageError(fmt::format("no hard case has such a name; {} lists them",
+                                     (study.scenes / "cases.toml").string()));
     if (options.map) study.maps.assign(std::begin(mapped_integrators), std::end(mapped_integrators));
     return study;
 }
@@ -76,7 +90,7 @@ HardLine do_case(const HardCase& hard, const Study& study, const std::optional<G
     return line;
 }
 
-int conclude(const Options& options, const Study& study, const std::vector<HardLine>& lines,
+int conclude(const StabilityOptions& options, const Study& study, const std::vector<HardLine>& lines,
              const std::vector<StabilityMap>& maps) {
     std::vector<std::string> pictures;
     if (!maps.empty()) pictures = write_stability_maps(study.output, maps);
@@ -86,17 +100,17 @@ int conclude(const Options& options, const Study& study, const std::vector<HardL
     write_whole_file(study.output / "index.html", stability_html(lines, pictures));
     const auto wrong = std::count_if(lines.begin(), lines.end(),
                                      [](const HardLine& line) { return !line.outcome.failures.empty(); });
-    if (options.json) {
+    if (options.output.json) {
         fmt::print("{}\n", json.dump(2));
-    } else if (!options.quiet) {
+    } else if (!options.output.quiet) {
         fmt::print("{} of {} cases as they must be\n  {}\n", lines.size() - static_cast<std::size_t>(wrong),
                    lines.size(), (study.output / "index.html").string());
     }
     return wrong == 0 ? exit_done : exit_simulation;
 }
 
-int do_piece(const Options& options, const Study& study) {
-    const auto k = static_cast<std::size_t>(options.point);
+int do_piece(const StabilityOptions& options, const Study& study) {
+    const auto k = static_cast<std::size_t>(options.pieces.point);
     if (k >= study.size())
         throw UsageError(fmt::format("--point {}: the pieces end at {}", k, study.size() - 1));
     create_output(study);
@@ -113,8 +127,8 @@ int do_piece(const Options& options, const Study& study) {
     return exit_done;  // a case that is not as it must be is a result too
 }
 
-int collect(const Options& options, const Study& study) {
-    const bool silent = options.quiet || options.json;
+int collect(const StabilityOptions& options, const Study& study) {
+    const bool silent = !options.output.talks();
     std::vector<HardLine> lines;
     std::vector<StabilityMap> maps;
     std::string missing;
@@ -143,7 +157,7 @@ int collect(const Options& options, const Study& study) {
     return code;
 }
 
-int send(const Options& options, const Study& study) {
+int send(const StabilityOptions& options, const Study& study) {
     const auto is_there = [&](std::size_t k) {
         if (k < study.cases.size())
             return read_hard_line(study.output, study.cases[k], options.pictures).has_value();
@@ -155,7 +169,7 @@ int send(const Options& options, const Study& study) {
     work.what = fmt::format("hard case K of {}, counted from 0{}", study.cases.size(),
                             study.maps.empty() ? "" : ", or map of an integrator behind them");
     work.results = study.output;
-    work.threads = false;
+    work.words = options.words;
     work.unit = "case";
     work.total = static_cast<int>(study.size());
     for (std::size_t k = 0; k < study.size(); ++k) {
@@ -166,11 +180,11 @@ int send(const Options& options, const Study& study) {
                static_cast<int>(std::count_if(work.missing.begin(), work.missing.end(),
                                               [&](int k) { return !is_there(static_cast<std::size_t>(k)); }));
     };
-    return do_on_cluster(options, work);
+    return do_on_cluster(options.pieces.cluster, options.output, work);
 }
 
-int do_all(const Options& options, const Study& study) {
-    const bool silent = options.quiet || options.json;
+int do_all(const StabilityOptions& options, const Study& study) {
+    const bool silent = !options.output.talks();
     create_output(study);
     std::optional<GlContext> context;
     if (options.pictures) context.emplace(parse_device_choice(options.device));
@@ -191,14 +205,29 @@ int do_all(const Options& options, const Study& study) {
     return conclude(options, study, lines, maps);
 }
 
-}  // namespace
-
-int command_stability(const Options& options) {
+int stability(const StabilityOptions& options) {
     const InterruptWatch watch;
     const Study study = study_of(options);
-    if (options.cluster.submit) return send(options, study);
-    if (options.collect) return collect(options, study);
-    return options.point >= 0 ? do_piece(options, study) : do_all(options, study);
+    const PieceOptions& pieces = options.pieces;
+    if (pieces.cluster.submit) return send(options, study);
+    if (pieces.collect) return collect(options, study);
+    return pieces.point >= 0 ? do_piece(options, study) : do_all(options, study);
+}
+
+}  // namespace
+
+void add_stability(CommandLine& line) {
+    const auto [command, o] =
+        line.add("stability", "the hard cases, each with verdict, numbers and picture", stability);
+    o.words = line.words();
+    command.add_option("cases", o.cases, "names of cases, or parts of them (default: all)");
+    command.add_flag("--map", o.map, "also the (stiffness, step) map of each integrator");
+    command.add_option("--scenes", o.scenes, "folder of the cases (default: those that ship)");
+    command.add_option("-o", o.folder, "folder for the results")->capture_default_str();
+    add_device(command, o.device);
+    command.add_flag("--pictures,!--no-pictures", o.pictures, "draw each case (default: yes)");
+    add_piece_options(command, o.pieces);
+    add_output_options(command, o.output);
 }
 
 }  // namespace unravel::tool

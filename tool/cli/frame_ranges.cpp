@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "tool/cli/render_options.hpp"
-#include "tool/cluster/cluster.hpp"
+#include "tool/base/exit.hpp"
 #include "tool/picture/picture_stamp.hpp"
 
 namespace unravel::tool {
@@ -16,10 +15,6 @@ namespace {
 // A range for at least so many frames: every task reads the run from its start, for the colours' sake.
 constexpr int worth_a_task = 24;
 constexpr int most_tasks = 64;
-
-std::vector<FrameRange> ranges_of(const Options& options, const ClipOptions& clip) {
-    return cut_frames(clip.first, clip.last, options.parts);
-}
 
 // Drawn with this stamp, but for the renderer, which only the node knows that drew it.
 bool is_drawn(const RunFolder& folder, const ClipOptions& clip, const std::string& stamp,
@@ -34,13 +29,14 @@ bool is_drawn(const RunFolder& folder, const ClipOptions& clip, const std::strin
     });
 }
 
-int pictures_there(const RunFolder& folder, const ClipOptions& clip, const std::vector<FrameRange>& missing) {
-    int there = clip.last - clip.first + 1;
+int pictures_missing(const RunFolder& folder, const std::string& view,
+                     const std::vector<FrameRange>& missing) {
+    int count = 0;
     for (const FrameRange& range : missing) {
         for (int k = range.first; k <= range.last; ++k)
-            there -= !std::filesystem::exists(folder.picture(clip.views.back().name, k));
+            count += !std::filesystem::exists(folder.picture(view, k));
     }
-    return there;
+    return count;
 }
 
 }  // namespace
@@ -59,8 +55,8 @@ std::vector<FrameRange> cut_frames(int first, int last, int parts) {
     return ranges;
 }
 
-int send_ranges(const Options& options, const Scene& scene, const RunFolder& cached, const RunFolder& folder,
-                const ClipOptions& clip) {
+ClusterWork range_work(const std::vector<FrameRange>& ranges, const Scene& scene, const RunFolder& cached,
+                       const RunFolder& folder, const ClipOptions& clip) {
     if (!clip.keep_pictures)
         throw UsageError(
             "--slurm draws pictures and makes the video of them: it does not go with --no-pictures");
@@ -68,15 +64,12 @@ int send_ranges(const Options& options, const Scene& scene, const RunFolder& cac
         if (!std::filesystem::exists(cached.record(k)))
             throw FolderError(fmt::format("'{}' holds no frame {} yet", cached.root.string(), k));
     }
-    const std::vector<FrameRange> ranges = ranges_of(options, clip);
     const std::string stamp = picture_stamp(scene, clip, "");
     ClusterWork work;
     work.name = "render";
     work.what =
         fmt::format("range K of {}, counted from 0, of frames {}-{}", ranges.size(), clip.first, clip.last);
     work.results = folder.root;
-    if (options.parts == 0) work.more = {"--parts", std::to_string(ranges.size())};
-    work.threads = false;
     std::vector<FrameRange> missing;
     for (std::size_t k = 0; k < ranges.size(); ++k) {
         if (is_drawn(folder, clip, stamp, ranges[k])) continue;
@@ -84,20 +77,18 @@ int send_ranges(const Options& options, const Scene& scene, const RunFolder& cac
         missing.push_back(ranges[k]);
     }
     // What was drawn otherwise is not to be taken for this clip's.
-    work.prepare = [&] {
+    work.prepare = [folder, views = clip.views, stamp, ranges] {
         std::filesystem::create_directories(folder.frames());
-        for (const ClipView& view : clip.views) keep_ranges(folder, view.name, stamp, ranges);
+        for (const ClipView& view : views) keep_ranges(folder, view.name, stamp, ranges);
     };
     work.total = clip.last - clip.first + 1;
-    work.done = [&] { return pictures_there(folder, clip, missing); };
-    return do_on_cluster(options, work);
+    work.done = [folder, view = clip.views.back().name, total = work.total, missing] {
+        return total - pictures_missing(folder, view, missing);
+    };
+    return work;
 }
 
-void narrow_to_range(const Options& options, ClipOptions& clip) {
-    const std::vector<FrameRange> ranges = ranges_of(options, clip);
-    if (static_cast<std::size_t>(options.point) >= ranges.size())
-        throw UsageError(fmt::format("--point {}: the ranges end at {}", options.point, ranges.size() - 1));
-    const FrameRange& range = ranges[static_cast<std::size_t>(options.point)];
+void narrow_to_range(const FrameRange& range, ClipOptions& clip) {
     clip.first = range.first;
     clip.last = range.last;
     clip.video_ending.clear();
@@ -105,8 +96,8 @@ void narrow_to_range(const Options& options, ClipOptions& clip) {
     clip.shares_folder = true;
 }
 
-void gather_ranges(const Options& options, const Scene& scene, const RunFolder& folder, ClipOptions& clip) {
-    const std::vector<FrameRange> ranges = ranges_of(options, clip);
+void gather_ranges(const std::vector<FrameRange>& ranges, const Scene& scene, const RunFolder& folder,
+                   ClipOptions& clip) {
     const std::string stamp = picture_stamp(scene, clip, "");
     std::string missing;
     std::map<std::string, std::string> drawn_by;  // renderer → the first range that it drew

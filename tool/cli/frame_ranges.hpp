@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tool/base/names.hpp"
-#include "tool/base/options.hpp"
+#include "tool/cluster/cluster.hpp"
 #include "tool/picture/clip.hpp"
 #include "tool/picture/picture_stamp.hpp"
 
@@ -17,18 +17,19 @@ namespace unravel::tool {
 /// as are worth a task each.
 std::vector<FrameRange> cut_frames(int first, int last, int parts);
 
-/// Sends the ranges that are not drawn yet to the cluster.
+/// The ranges that are not drawn yet, as work for a cluster.
 ///   scene    as it is drawn
 ///   cached   the run, whose folder may be another than `folder`, that of the pictures
-int send_ranges(const Options& options, const Scene& scene, const RunFolder& cached, const RunFolder& folder,
-                const ClipOptions& clip);
+ClusterWork range_work(const std::vector<FrameRange>& ranges, const Scene& scene, const RunFolder& cached,
+                       const RunFolder& folder, const ClipOptions& clip);
 
-/// Makes `clip` that of the one range that --point names. Throws UsageError.
-void narrow_to_range(const Options& options, ClipOptions& clip);
+/// Makes `clip` that of this one range.
+void narrow_to_range(const FrameRange& range, ClipOptions& clip);
 
 /// Sees that every range lies there, drawn alike, and makes `clip` one that takes them all over. Throws
 /// MissingPieces that names those missing, FolderError that names the renderers where there was more than
 /// one.
-void gather_ranges(const Options& options, const Scene& scene, const RunFolder& folder, ClipOptions& clip);
+void gather_ranges(const std::vector<FrameRange>& ranges, const Scene& scene, const RunFolder& folder,
+                   ClipOptions& clip);
 
 }  // namespace unravel::tool

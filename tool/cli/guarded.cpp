@@ -10,8 +10,7 @@
 #include "sim/scene_file/load.hpp"
 #include "sim/step/explicit_limit.hpp"
 #include "sim/step/step.hpp"
-#include "tool/base/options.hpp"
-#include "tool/cli/render_options.hpp"
+#include "tool/base/exit.hpp"
 #include "tool/cluster/cluster.hpp"
 #include "tool/folder/run_folder.hpp"
 

@@ -9,9 +9,9 @@
 
 #include "base/whole_file.hpp"
 #include "sim/scene_file/load.hpp"
+#include "tool/base/exit.hpp"
 #include "tool/base/interrupt.hpp"
 #include "tool/cli/guarded.hpp"
-#include "tool/cli/render_options.hpp"
 #include "tool/cluster/cluster.hpp"
 #include "tool/folder/folder_lock.hpp"
 #include "tool/folder/run_folder.hpp"
@@ -31,14 +31,13 @@ struct ListedScene {
     int last;  // frame that is asked for
 };
 
-Options options_for(const Options& options, const ListedScene& listed) {
-    Options one = options;
-    one.scene = listed.file;
-    one.output = listed.folder.root;
+RunOptions options_for(const RunOptions& options, const ListedScene& listed) {
+    RunOptions one = options;
+    one.folder = listed.folder.root;
     return one;
 }
 
-std::vector<ListedScene> list_scenes(const Options& options) {
+std::vector<ListedScene> list_scenes(const RunOptions& options) {
     std::vector<ListedScene> list;
     std::vector<SceneProblem> problems;
     std::string said;
@@ -46,9 +45,9 @@ std::vector<ListedScene> list_scenes(const Options& options) {
     for (const fs::path& file : options.scenes) {
         try {
             Scene scene = load_scene(file, options.overrides);
-            const int last = clip_options_of(options, scene).last;
-            const fs::path around = options.output.empty() ? fs::path("output") : options.output;
-            RunFolder folder{options.scenes.size() == 1 && !options.output.empty() ? around
+            const int last = clip_options_of(options.pictures, scene).last;
+            const fs::path around = options.folder.empty() ? fs::path("output") : options.folder;
+            RunFolder folder{options.scenes.size() == 1 && !options.folder.empty() ? around
                                                                                    : around / scene.name};
             if (!folders.insert(folder.root.lexically_normal()).second) {
                 throw UsageError(fmt::format("two of the scenes are called {}, and would share '{}'",
@@ -90,15 +89,17 @@ int frames_there(const std::vector<ListedScene>& list) {
 }
 
 // The folder that all the clips are in; a single clip is its own.
-fs::path results_of(const Options& options, const std::vector<ListedScene>& list) {
+fs::path results_of(const RunOptions& options, const std::vector<ListedScene>& list) {
     if (list.size() == 1) return list.front().folder.root;
-    return options.output.empty() ? fs::path("output") : options.output;
+    return options.folder.empty() ? fs::path("output") : options.folder;
 }
 
-int send(const Options& options, const std::vector<ListedScene>& list) {
+int send(const RunOptions& options, const std::vector<ListedScene>& list) {
     const std::vector<std::string> command = command_of_run(options);
     ClusterWork work;
     work.name = options.words.front();
+    work.words = options.words;
+    work.threads = options.threads == 0;
     work.what = list.size() == 1 ? "the scene" : fmt::format("scene K of {}, counted from 0", list.size());
     work.results = results_of(options, list);
     for (std::size_t k = 0; k < list.size(); ++k) {
@@ -115,10 +116,10 @@ int send(const Options& options, const std::vector<ListedScene>& list) {
         }
     };
     work.done = [&] { return frames_there(list); };
-    return do_on_cluster(options, work);
+    return do_on_cluster(options.pieces.cluster, options.output, work);
 }
 
-int conclude(const Options& options, const std::vector<ListedScene>& list) {
+int conclude(const RunOptions& options, const std::vector<ListedScene>& list) {
     const std::vector<std::string> command = command_of_run(options);
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     std::vector<std::string> lines;
@@ -137,9 +138,9 @@ int conclude(const Options& options, const std::vector<ListedScene>& list) {
         lines.push_back(fmt::format("{:<24} {}", listed.scene.name,
                                     why.empty() ? listed.folder.root.string() : "MISSING: " + why));
     }
-    if (options.json) {
+    if (options.output.json) {
         fmt::print("{}\n", json.dump(2));
-    } else if (!options.quiet) {
+    } else if (!options.output.quiet) {
         fmt::print("{}\n{} of {} clips are complete\n", fmt::join(lines, "\n"), list.size() - missing,
                    list.size());
         if (missing > 0) fmt::print("the same command sends those that are missing again\n");
@@ -147,11 +148,11 @@ int conclude(const Options& options, const std::vector<ListedScene>& list) {
     return missing == 0 ? exit_done : exit_simulation;
 }
 
-int do_here(const Options& options, const std::vector<ListedScene>& list, int (*one)(const Options&)) {
+int do_here(const RunOptions& options, const std::vector<ListedScene>& list, RunOne one) {
     int code = exit_done;
     std::vector<std::string> failed;
     for (const ListedScene& listed : list) {
-        const int ended = guarded([&] { return one(options_for(options, listed)); });
+        const int ended = guarded([&] { return one(listed.file, options_for(options, listed)); });
         if (ended == exit_interrupted) return ended;
         if (ended != exit_done) failed.push_back(listed.scene.name);
         if (code == exit_done) code = ended;
@@ -164,7 +165,7 @@ int do_here(const Options& options, const std::vector<ListedScene>& list, int (*
 
 }  // namespace
 
-std::vector<std::string> command_of_run(const Options& options) {
+std::vector<std::string> command_of_run(const RunOptions& options) {
     std::vector<std::string> words = words_without(
         options.words,
         {"--slurm", "--wait", "--dry-run", "--force", "--resume", "--collect", "--quiet", "--json",
@@ -176,24 +177,20 @@ std::vector<std::string> command_of_run(const Options& options) {
     return words;
 }
 
-int for_each_scene(const Options& options, int (*one)(const Options&)) {
-    if (options.scenes.empty()) return one(options);
-    const bool whole = options.point < 0 && !options.collect && !options.cluster.submit;
-    if (options.scenes.size() == 1 && whole) {
-        Options single = options;
-        single.scene = options.scenes.front();
-        return one(single);
-    }
+int for_each_scene(const RunOptions& options, RunOne one) {
+    const PieceOptions& pieces = options.pieces;
+    if (options.scenes.size() == 1 && pieces.whole()) return one(options.scenes.front(), options);
     const std::vector<ListedScene> list = list_scenes(options);
-    if (options.cluster.submit) return send(options, list);
-    if (options.collect) return conclude(options, list);
-    if (options.point < 0) return do_here(options, list, one);
-    if (static_cast<std::size_t>(options.point) >= list.size())
-        throw UsageError(fmt::format("--point {}: the scenes end at {}", options.point, list.size() - 1));
-    Options single = options_for(options, list[static_cast<std::size_t>(options.point)]);
+    if (pieces.cluster.submit) return send(options, list);
+    if (pieces.collect) return conclude(options, list);
+    if (pieces.point < 0) return do_here(options, list, one);
+    if (static_cast<std::size_t>(pieces.point) >= list.size())
+        throw UsageError(fmt::format("--point {}: the scenes end at {}", pieces.point, list.size() - 1));
+    const ListedScene& listed = list[static_cast<std::size_t>(pieces.point)];
+    RunOptions single = options_for(options, listed);
     single.resume = true;
     single.force = false;
-    return one(single);
+    return one(listed.file, single);
 }
 
 }  // namespace unravel::tool

@@ -11,7 +11,9 @@
 
 #include "base/file_errors.hpp"
 #include "base/whole_file.hpp"
+#include "tool/base/exit.hpp"
 #include "tool/base/interrupt.hpp"
+#include "tool/base/program.hpp"
 #include "tool/base/progress.hpp"
 #include "tool/cluster/job_script.hpp"
 #include "tool/cluster/slurm.hpp"
@@ -25,17 +27,11 @@ namespace {
 
 constexpr std::size_t largest_log = std::size_t{64} << 20;
 
-fs::path this_program() {
-    std::error_code error;
-    fs::path path = fs::read_symlink("/proc/self/exe", error);
-    return error ? fs::path("unravel") : path;
-}
-
-std::vector<JobScript> scripts_of(const Options& options, const ClusterWork& work) {
-    std::vector<std::string> words = piece_words(options.words);
+std::vector<JobScript> scripts_of(const ClusterWork& work) {
+    std::vector<std::string> words = piece_words(work.words);
     words.insert(words.end(), work.more.begin(), work.more.end());
     std::string command = shell_quoted(words);
-    if (work.threads && options.threads == 0) command += " --threads \"${SLURM_CPUS_PER_TASK:-1}\"";
+    if (work.threads) command += " --threads \"${SLURM_CPUS_PER_TASK:-1}\"";
     if (work.undivided) return {{work.name, work.what, command, {}, work.alone}};
     std::vector<JobScript> scripts;
     if (!work.before.empty() && !work.missing.empty()) {
@@ -79,18 +75,18 @@ std::string waiting_for(const std::vector<QueuedTask>& queue) {
 }
 
 // Until no job of the work is left in the queue. False: the user would not wait.
-bool wait_for_end(const Options& options, const ClusterWork& work, const std::string& comment) {
+bool wait_for_end(const OutputOptions& output, const ClusterWork& work, const std::string& comment) {
     using namespace std::chrono_literals;
     constexpr auto blink = 100ms, longest = 10000ms;
     auto period = 500ms;
     const int before = work.done();
     std::string told;
-    Progress progress(work.name, work.total, options.quiet, work.unit);
+    Progress progress(work.name, work.total, output.quiet, work.unit);
     for (;;) {
         const std::vector<QueuedTask> queue = slurm_queue(comment);
         progress.show(work.done(), before);
         if (queue.empty()) break;
-        if (const std::string why = waiting_for(queue); !why.empty() && why != told && !options.quiet) {
+        if (const std::string why = waiting_for(queue); !why.empty() && why != told && !output.quiet) {
             progress.finish();
             fmt::print(stderr, "{}: waits in the queue: {}\n", work.name, why);
             told = why;
@@ -105,10 +101,11 @@ bool wait_for_end(const Options& options, const ClusterWork& work, const std::st
     return true;
 }
 
-int wait_and_tell(const Options& options, const ClusterWork& work, const std::vector<std::string>& jobs) {
+int wait_and_tell(const OutputOptions& output, const ClusterWork& work,
+                  const std::vector<std::string>& jobs) {
     const InterruptWatch watch;
     const fs::path results = fs::absolute(work.results).lexically_normal();
-    if (!wait_for_end(options, work, job_comment(results))) {
+    if (!wait_for_end(output, work, job_comment(results))) {
         fmt::print(stderr,
                    "the jobs go on; `scancel {}` ends those that wait and sends those that run back "
                    "to wait\n",
@@ -122,15 +119,15 @@ int wait_and_tell(const Options& options, const ClusterWork& work, const std::ve
     return *code;
 }
 
-void tell(const Options& options, const ClusterWork& work, const std::vector<JobScript>& scripts,
+void tell(const OutputOptions& output, const ClusterWork& work, const std::vector<JobScript>& scripts,
           const std::vector<std::string>& jobs) {
-    if (options.json) {
+    if (output.json) {
         nlohmann::ordered_json json{{"results", work.results.string()}, {"pieces", work.missing}};
         for (std::size_t k = 0; k < jobs.size(); ++k) json["jobs"][scripts[k].name] = jobs[k];
         fmt::print("{}\n", json.dump(2));
         return;
     }
-    if (options.quiet) return;
+    if (output.quiet) return;
     for (std::size_t k = 0; k < jobs.size(); ++k) {
         const std::size_t tasks = scripts[k].tasks.size();
         fmt::print("job {}  {}{}\n", jobs[k], scripts[k].name,
@@ -188,13 +185,13 @@ std::string why_missing(const fs::path& results, const std::string& name, int pi
     return fmt::format("{} ({})", said.empty() ? last.empty() ? "was killed" : last : said, log.string());
 }
 
-int do_on_cluster(const Options& options, const ClusterWork& work) {
+int do_on_cluster(const ClusterOptions& options, const OutputOptions& output, const ClusterWork& work) {
     const fs::path results = fs::absolute(work.results).lexically_normal();
-    const std::vector<JobScript> scripts = scripts_of(options, work);
+    const std::vector<JobScript> scripts = scripts_of(work);
     const auto text_of = [&](const JobScript& script) {
-        return job_script_text(script, this_program(), results, fs::current_path(), options.cluster);
+        return job_script_text(script, program_file(), results, fs::current_path(), options);
     };
-    if (options.cluster.dry_run) {
+    if (options.dry_run) {
         for (const JobScript& script : scripts)
             fmt::print("# ---- {}\n{}\n", (job_folder(results) / (script.name + ".sh")).string(),
                        text_of(script));
@@ -203,7 +200,7 @@ int do_on_cluster(const Options& options, const ClusterWork& work) {
     if (const std::vector<std::string> jobs = jobs_of(slurm_queue(job_comment(results))); !jobs.empty()) {
         const fs::path last = job_folder(results) / (scripts.back().name + ".sh");
         const bool same = fs::exists(last) && read_whole_text(last, largest_log) == text_of(scripts.back());
-        if (same && options.cluster.wait) return wait_and_tell(options, work, jobs);
+        if (same && options.wait) return wait_and_tell(output, work, jobs);
         throw FolderError(fmt::format("'{}' is at work on the cluster already{}: {}`scancel {}` ends it",
                                       work.results.string(), same ? "" : ", in another way",
                                       same ? "--wait shows how far it is, " : "", fmt::join(jobs, " ")));
@@ -222,21 +219,8 @@ int do_on_cluster(const Options& options, const ClusterWork& work) {
         const bool collects = k + 1 == scripts.size() && !work.undivided;
         jobs.push_back(slurm_submit(file.string(), jobs.empty() ? "" : jobs.back(), collects));
     }
-    tell(options, work, scripts, jobs);
-    return options.cluster.wait ? wait_and_tell(options, work, jobs) : exit_done;
-}
-
-int send_bench(const Options& options) {
-    ClusterWork work;
-    work.name = "bench";
-    work.what = "All of it on one node, which it has for itself: what is timed is compared.";
-    work.results = options.output.empty() ? fs::path("output") / "bench" : options.output;
-    work.threads = false;
-    work.alone = work.undivided = true;
-    work.unit = "bench";
-    work.total = 1;
-    work.done = [] { return 0; };
-    return do_on_cluster(options, work);
+    tell(output, work, scripts, jobs);
+    return options.wait ? wait_and_tell(output, work, jobs) : exit_done;
 }
 
 }  // namespace unravel::tool

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tool/base/names.hpp"
-#include "tool/base/options.hpp"
+#include "tool/cluster/cluster_options.hpp"
 
 namespace unravel::tool {
 

@@ -9,10 +9,10 @@
 
 namespace unravel::tool {
 
-InspectedStep inspect_step(const Scene& scene, const RunFolder& folder, int frame, int step) {
+InspectedStep inspect_step(const CachedRun& run, int frame, int step) {
     InspectedStep out;
     out.frame = frame;
-    out.simulation = start_simulation(scene);
+    out.simulation = start_simulation(run.scene);
     const ClothModel& model = out.simulation.model;
     out.steps = out.simulation.steps_per_frame;
     out.step = step == 0 ? out.steps : step;
@@ -24,12 +24,11 @@ InspectedStep inspect_step(const Scene& scene, const RunFolder& folder, int fram
     ComponentColors colors;
     const auto edges = drawn_edges(model);
     for (int k = 0; k < frame; ++k) {
-        if (!std::filesystem::exists(folder.record(k))) {
+        if (!std::filesystem::exists(run.folder.record(k))) {
             throw FolderError(fmt::format("'{}' holds {} frames; frame {} can't be inspected",
-                                          folder.root.string(), k, frame));
+                                          run.folder.root.string(), k, frame));
         }
-        const FrameRecord record =
-            read_record(folder.record(k), scene_hash(scene), model.size(), model.springs.size());
+        const FrameRecord record = run.read(k);
         colors.assign(record.component, edges);
         if (k + 1 == frame) restore(out.simulation, record);
     }

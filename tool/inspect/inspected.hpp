@@ -5,7 +5,7 @@
 #include "sim/run/simulate.hpp"
 #include "sim/step/trace.hpp"
 #include "tool/base/names.hpp"
-#include "tool/folder/run_folder.hpp"
+#include "tool/folder/cached_run.hpp"
 #include "tool/report/component_table.hpp"
 
 namespace unravel::tool {
@@ -29,6 +29,6 @@ struct InspectedStep {
 /// Goes on from the record of the frame before to step `step` (0: the last) of frame `frame`: the same bits
 /// as in the run. Throws FolderError where the folder holds no such frame, UsageError where the frame has no
 /// such step.
-InspectedStep inspect_step(const Scene& scene, const RunFolder& folder, int frame, int step);
+InspectedStep inspect_step(const CachedRun& run, int frame, int step);
 
 }  // namespace unravel::tool

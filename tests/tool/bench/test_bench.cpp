@@ -1,4 +1,3 @@
-#include "tool/bench/command_speed.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -10,11 +9,12 @@
 #include "tests/base/temporary_folder.hpp"
 #include "tests/json_schema.hpp"
 #include "tests/sim/scenes.hpp"
+#include "tool/base/exit.hpp"
 #include "tool/bench/measured_problem.hpp"
 #include "tool/bench/peers.hpp"
 #include "tool/bench/sized_scene.hpp"
 #include "tool/bench/speed_report.hpp"
-#include "tool/cli/render_options.hpp"
+#include "tool/cli/commands.hpp"
 #include "tool/report/page_files.hpp"
 
 using namespace unravel;
@@ -197,21 +197,16 @@ TEST_CASE("the largest component alone is solved as among the others", "[bench]"
 
 TEST_CASE("a tiny bench leaves tables, plots, and records as their schema says", "[bench]") {
     const TemporaryFolder folder;
-    Options options;
-    options.scene = UNRAVEL_SOURCE_DIR "/scenes/hang.toml";
-    options.overrides = {"clip.duration=0.08"};
-    options.output = folder / "bench";
-    options.sizes = "100,400";
-    options.budget = 0.5;
-    options.threads = 2;
-    options.quiet = true;
-    REQUIRE(command_bench_speed(options) == exit_done);
+    const std::filesystem::path made = folder / "bench";
+    REQUIRE(run_command_line({"bench", UNRAVEL_SOURCE_DIR "/scenes/hang.toml", "--set", "clip.duration=0.08",
+                              "-o", made.string(), "--sizes", "100,400", "--budget", "0.5", "--threads", "2",
+                              "--quiet"}) == exit_done);
     for (const char* name :
          {"bench.json", "bench.md", "summary.md", "bench.svg", "bench.png", "details.svg", "details.png"})
-        CHECK(std::filesystem::file_size(options.output / name) > 100);
+        CHECK(std::filesystem::file_size(made / name) > 100);
 
     const auto schema = nlohmann::json::parse(page_file("bench.schema.json"));
-    const nlohmann::json record = json_of(options.output / "bench.json");
+    const nlohmann::json record = json_of(made / "bench.json");
     CHECK(valid(record, schema));
     for (const auto& key : schema["required"]) {
         nlohmann::json without = record;

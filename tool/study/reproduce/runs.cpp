@@ -1,5 +1,4 @@
 #include "tool/study/reproduce/runs.hpp"
-#include "source_dir.hpp"
 
 #include <tbb/task_arena.h>
 
@@ -9,6 +8,7 @@
 
 #include "render/palette.hpp"
 #include "sim/scene_file/load.hpp"
+#include "tool/base/program.hpp"
 #include "tool/picture/view.hpp"
 
 namespace unravel::tool {
@@ -16,7 +16,7 @@ namespace unravel::tool {
 std::optional<Scene> paper_scene(const std::string& name, const ReproduceScale& scale,
                                  std::vector<std::string> overrides) {
     std::filesystem::path file = std::filesystem::path("scenes") / (name + ".toml");
-    if (!std::filesystem::exists(file)) file = std::filesystem::path(UNRAVEL_SCENES) / (name + ".toml");
+    if (!std::filesystem::exists(file)) file = shipped_scenes() / (name + ".toml");
     if (!std::filesystem::exists(file)) return std::nullopt;
     // The paper's own, so that iterations and multiplies compare.
     overrides.insert(overrides.begin(), "solver.preconditioner=constrained-block");

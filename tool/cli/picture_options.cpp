@@ -1,10 +1,13 @@
-#include "tool/cli/render_options.hpp"
+#include "tool/cli/picture_options.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <string_view>
+
+#include "sim/scene/words.hpp"
+#include "tool/cli/common_options.hpp"
 
 namespace unravel::tool {
 
@@ -22,10 +25,9 @@ bool parse_pair(std::string_view text, char separator, int& a, int& b) {
 }
 
 // What the command line says about looks goes before what the scene says.
-void apply_look(const Options& options, Look& look) {
-    static constexpr std::string_view shows[] = {"components", "splitting", "strain", "velocity", "contact"};
+void apply_look(const PictureOptions& options, Look& look) {
     if (!options.show.empty())
-        look.show = static_cast<Show>(std::ranges::find(shows, options.show) - std::begin(shows));
+        look.show = static_cast<Show>(std::ranges::find(show_words, options.show) - std::begin(show_words));
     look.legend = look.legend || options.legend;
     look.transparent = look.transparent || options.transparent;
     if (options.motion_blur > 0) look.motion_blur = options.motion_blur;
@@ -82,15 +84,12 @@ std::vector<std::size_t> cameras_of(const std::string& names, const Scene& scene
     return cameras;
 }
 
-void set_frames(const Options& options, const Scene& scene, ClipOptions& clip) {
-    const int last = scene.clip.frames() - 1;
-    clip.last = last;
-    if (!options.frames.empty()) {
-        const bool pair = parse_pair(options.frames, '-', clip.first, clip.last);
-        if (!pair || clip.first < 0 || clip.last < clip.first || clip.last > last)
-            throw UsageError(fmt::format("--frames {}: write it as A-B within 0-{}", options.frames, last));
-    }
+void set_frames(const PictureOptions& options, const Scene& scene, ClipOptions& clip) {
+    const FrameRange range = frames_of(options.frames, scene);
+    clip.first = range.first;
+    clip.last = range.last;
     if (options.still < 0) return;
+    const int last = scene.clip.frames() - 1;
     if (options.still > last || !options.frames.empty())
         throw UsageError(fmt::format("--still {}: one frame of 0-{}, without --frames", options.still, last));
     clip.first = clip.last = options.still;
@@ -98,7 +97,63 @@ void set_frames(const Options& options, const Scene& scene, ClipOptions& clip) {
 
 }  // namespace
 
-ClipOptions clip_options_of(const Options& options, Scene& scene) {
+void add_frames(CLI::App& command, std::string& frames) {
+    command.add_option("--frames", frames, "A-B: only these frames");
+}
+
+void add_view_options(CLI::App& command, PictureOptions& o) {
+    command.add_option("--size", o.size, "WxH, both even for an mp4 (default: the scene's)");
+    command.add_option("--camera", o.camera,
+                       "the scene's cameras by name, with commas between, or all (default: the first)");
+    command.add_option("--show", o.show, "what the colours of the component view tell (default: components)")
+        ->check(CLI::IsMember(std::vector<std::string>(std::begin(show_words), std::end(show_words))));
+    add_device(command, o.device);
+    command
+        .add_option("--samples", o.samples,
+                    "per pixel, clamped to what the renderer offers (default: 4; on the CPU outlines are "
+                    "smoothed instead)")
+        ->check(CLI::Range(1, 64));
+    command.add_option("--supersample", o.supersample, "draw this many times larger and average")
+        ->check(CLI::Range(1, 4));
+}
+
+void add_picture_options(CLI::App& command, PictureOptions& o) {
+    add_frames(command, o.frames);
+    command
+        .add_option("--style", o.style,
+                    "textured, components, both, overlay or side-by-side; several with commas between")
+        ->capture_default_str();
+    add_view_options(command, o);
+    command.add_flag("--legend", o.legend, "tell in the component view what its colours mean");
+    command.add_flag("--transparent", o.transparent,
+                     "no ground, no background: frames with an alpha channel");
+    command.add_option("--motion-blur", o.motion_blur, "sub-frames that each picture is the mean of")
+        ->check(CLI::Range(1, 64));
+    command
+        .add_option("--subdivide", o.subdivide, "draw each cell as 4 to the power of this many smooth ones")
+        ->check(CLI::Range(0, 3));
+    command
+        .add_option("--video", o.video,
+                    "mp4, webm, mkv (lossless), gif or none (default: mp4; mkv where --transparent)")
+        ->check(CLI::IsMember({"mp4", "webm", "mkv", "gif", "none"}));
+    command.add_option("--codec", o.codec, "this encoder and no other");
+    command.add_option("--crf", o.crf, "quality of the video, smaller is better")
+        ->check(CLI::NonNegativeNumber);
+    command.add_option("--preset", o.preset, "the encoder's effort");
+    command.add_flag("--pictures,!--no-pictures", o.pictures, "write PNG frames (default: yes)");
+}
+
+FrameRange frames_of(const std::string& frames, const Scene& scene) {
+    FrameRange range{0, scene.clip.frames() - 1};
+    const int last = range.last;
+    if (frames.empty()) return range;
+    const bool pair = parse_pair(frames, '-', range.first, range.last);
+    if (!pair || range.first < 0 || range.last < range.first || range.last > last)
+        throw UsageError(fmt::format("--frames {}: write it as A-B within 0-{}", frames, last));
+    return range;
+}
+
+ClipOptions clip_options_of(const PictureOptions& options, Scene& scene) {
     ClipOptions clip;
     apply_look(options, scene.look);
     if (!options.size.empty() && !parse_pair(options.size, 'x', scene.clip.size[0], scene.clip.size[1]))

@@ -1,4 +1,4 @@
-#include "tool/cli/render_options.hpp"
+#include "tool/cli/picture_options.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -18,7 +18,7 @@ Scene two_cameras() {
     return scene;
 }
 
-std::vector<std::string> view_names(const Options& options) {
+std::vector<std::string> view_names(const PictureOptions& options) {
     Scene scene = two_cameras();
     std::vector<std::string> names;
     for (const ClipView& view : clip_options_of(options, scene).views) names.push_back(view.name);
@@ -29,7 +29,7 @@ std::vector<std::string> view_names(const Options& options) {
 
 TEST_CASE("views_are_named_after_layout_and_camera") {
     using Names = std::vector<std::string>;
-    Options options;
+    PictureOptions options;
     CHECK(view_names(options) == Names{"textured", "components"});
     options.style = "side-by-side,overlay";
     CHECK(view_names(options) == Names{"side_by_side", "overlay"});
@@ -50,7 +50,7 @@ TEST_CASE("views_are_named_after_layout_and_camera") {
 
 TEST_CASE("a_still_is_one_frame_without_a_video_and_transparency_goes_where_it_is_kept") {
     Scene scene = two_cameras();
-    Options options;
+    PictureOptions options;
     options.still = 7;
     ClipOptions clip = clip_options_of(options, scene);
     CHECK(clip.first == 7);
