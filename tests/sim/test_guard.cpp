@@ -76,7 +76,7 @@ TEST_CASE("energy is not judged where the scene puts it in") {
     CHECK(std::isinf(hanging_sheet({"wind.velocity=[3,0,0]"}).guard.energy));
 }
 
-TEST_CASE("a number that is none stops the run at its particle") {
+TEST_CASE("a NaN stops the run at its particle") {
     Simulation s = hanging_sheet();
     s.state.v[20] = Vec3(0, std::numeric_limits<double>::quiet_NaN(), 0);
     const StepFailure failure = failure_of(s);
