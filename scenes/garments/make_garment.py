@@ -17,8 +17,8 @@ import os
 import struct
 
 
-def tshirt(spacing):
-    """Panels as they are cut. Shoulders follow the body, with room between; rows run from there to the armhole, and on
+def tshirt(spacing, away=0.15):
+    """Panels as they are cut, so far before and behind the middle. Shoulders follow the body, with room between; rows run from there to the armhole, and on
     to the hem. Sleeves are their outer columns."""
     width, reach, hem, neck = 0.50, 0.44, 0.80, 0.095
     half, columns = round(width / 2 / spacing), round(reach / spacing)
@@ -39,7 +39,7 @@ def tshirt(spacing):
     vertices, uvs, faces, lines = [], [], [], []
     groups = {"front": [], "back": [], "front_top": [], "back_top": [], "neck": [], "hem": [], "cuffs": []}
     number = {}
-    for panel, z in (("front", 0.15), ("back", -0.15)):
+    for panel, z in (("front", away), ("back", -away)):
         for j in range(rows + 1):
             for i in range(-columns, columns + 1):
                 if abs(i) > half and j > deep:

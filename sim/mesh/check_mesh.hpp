@@ -1,21 +1,15 @@
 #pragma once
 
-#include <vector>
-
-#include "sim/mesh/obj.hpp"
+#include "sim/mesh/polygon_mesh.hpp"
 
 namespace unravel::sim {
 
-/// Everything that keeps a mesh from being cloth, each with its vertices or faces (numbered from 1, as in the
-/// file), its line and a fix: no faces, vertices that no face uses or that lie on one another, faces that
-/// name a vertex twice or have no area, edges of more than two faces, and neighbours that face opposite
-/// ways. Adds at most `most` faults.
-void check_cloth_mesh(const ObjMesh& mesh, std::vector<MeshFault>& faults, std::size_t most = 8);
+/// What keeps a mesh, mended as far as it was asked for (repair.hpp), from being cloth, each with its line and
+/// a fix: no faces, edges of more than two faces, neighbours that can't be turned alike, and, unless the scene
+/// says that they stay `apart`, vertices that lie on one another.
+void check_cloth_mesh(const PolygonMesh& mesh, bool apart, MeshMessages& said);
 
-/// The same for a body that cloth meets: besides, it must be closed and its faces must look outward.
-void check_solid_mesh(const ObjMesh& mesh, std::vector<MeshFault>& faults, std::size_t most = 8);
-
-/// Area of a face: of a quad that is not flat, half the cross product of its diagonals.
-double face_area(const std::vector<Vec3>& positions, const ObjMesh::Face& face);
+/// The same for a body that cloth meets, which must be `closed` besides where it has an inside.
+void check_solid_mesh(const PolygonMesh& mesh, bool closed, MeshMessages& said);
 
 }  // namespace unravel::sim

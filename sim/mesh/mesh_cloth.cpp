@@ -16,7 +16,7 @@ struct Side {
     std::uint32_t low, high, face, corner;  // the edge from corner to corner + 1
 };
 
-std::vector<Side> sides_of(const std::vector<ObjMesh::Face>& faces) {
+std::vector<Side> sides_of(const std::vector<PolygonMesh::Face>& faces) {
     std::vector<Side> out;
     out.reserve(4 * faces.size());
     for (std::uint32_t f = 0; f < faces.size(); ++f) {
@@ -42,7 +42,7 @@ struct Pair {
     std::uint32_t f, k, g, l;
 };
 
-Pair pair_of(const std::vector<Vec3>& x, const std::vector<ObjMesh::Face>& faces, const Side& one,
+Pair pair_of(const std::vector<Vec3>& x, const std::vector<PolygonMesh::Face>& faces, const Side& one,
              const Side& other) {
     Pair pair{0, one.face, one.corner, other.face, other.corner};
     const auto angle = [&](std::uint32_t face, std::uint32_t corner) {
@@ -58,7 +58,7 @@ Pair pair_of(const std::vector<Vec3>& x, const std::vector<ObjMesh::Face>& faces
 }
 
 // Triangles two by two, the most rectangular pairs first.
-std::vector<Pair> pair_triangles(const std::vector<Vec3>& x, const std::vector<ObjMesh::Face>& faces) {
+std::vector<Pair> pair_triangles(const std::vector<Vec3>& x, const std::vector<PolygonMesh::Face>& faces) {
     std::vector<Pair> candidates, taken;
     const std::vector<Side> sides = sides_of(faces);
     for (std::size_t s = 1; s < sides.size(); ++s) {
@@ -86,11 +86,11 @@ void make_cells(MeshCloth& mesh) {
     auto next = pairs.begin();
     for (const Pair& pair : pairs) paired[pair.f] = paired[pair.g] = 1;
     for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
-        const ObjMesh::Face& face = mesh.faces[f];
+        const PolygonMesh::Face& face = mesh.faces[f];
         if (!paired[f]) {
             mesh.cells.push_back({face.corners, face.vertex, face.uv});
         } else if (next != pairs.end() && next->f == f) {
-            const ObjMesh::Face& other = mesh.faces[next->g];
+            const PolygonMesh::Face& other = mesh.faces[next->g];
             const std::uint32_t k = next->k, l = next->l;
             MeshCloth::Cell cell;
             cell.corners = 4;
@@ -127,7 +127,7 @@ void make_edges(MeshCloth& mesh) {
 }
 
 // Segments that run along a face are drawn lines, the others are seams.
-void make_seams(const ObjMesh& from, MeshCloth& mesh) {
+void make_seams(const PolygonMesh& from, MeshCloth& mesh) {
     std::vector<std::array<std::uint32_t, 2>> sides;
     for (const Side& side : sides_of(mesh.faces)) sides.push_back({side.low, side.high});
     for (const auto& [a, b] : from.lines) {
@@ -159,7 +159,7 @@ Vec3 from_file(const Vec3& x, double scale, UpAxis up) {
     return up == UpAxis::y ? Vec3(scale * x) : Vec3(scale * x.x(), scale * x.z(), -scale * x.y());
 }
 
-MeshCloth make_mesh_cloth(ObjMesh from, double scale, UpAxis up) {
+MeshCloth make_mesh_cloth(PolygonMesh from, double scale, UpAxis up) {
     MeshCloth mesh;
     mesh.rest = std::move(from.positions);
     for (Vec3& x : mesh.rest) x = from_file(x, scale, up);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/mesh/obj.hpp"
+#include "sim/mesh/polygon_mesh.hpp"
 
 namespace unravel::sim {
 
@@ -26,7 +26,7 @@ struct MeshCloth {
     };
     std::vector<Vec3> rest;  ///< (vertices) m, y up: the file's positions, turned and scaled
     std::vector<Vec2> uvs;   ///< (texture vertices) as in the file
-    std::vector<ObjMesh::Face> faces;
+    std::vector<PolygonMesh::Face> faces;
     std::vector<Cell> cells;
     std::vector<Edge> edges;                          ///< of cells, sorted by (a, b)
     std::vector<std::array<std::uint32_t, 2>> seams;  ///< vertices sewn together, sorted
@@ -39,7 +39,7 @@ struct MeshCloth {
 };
 
 /// Makes a cloth of a mesh without faults.
-MeshCloth make_mesh_cloth(ObjMesh mesh, double scale, UpAxis up);
+MeshCloth make_mesh_cloth(PolygonMesh mesh, double scale, UpAxis up);
 
 /// A position of a file, scaled, with y up: z-up files are turned about x, so that (x, y, z) is (x, z, −y).
 Vec3 from_file(const Vec3& x, double scale, UpAxis up);

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/mesh/check_mesh.hpp"
+#include "sim/mesh/repair.hpp"
 #include "sim/mesh/mesh_cloth.hpp"
 
 namespace unravel::sim {
@@ -13,7 +13,7 @@ ClothSurface surface_of_mesh(const MeshCloth& mesh) {
     ClothSurface out;
     out.uvs = mesh.uvs;
     double area = 0, flat = 0;
-    for (const ObjMesh::Face& face : mesh.faces) {
+    for (const PolygonMesh::Face& face : mesh.faces) {
         out.faces.push_back({face.corners, face.vertex, face.uv});
         bool has_uv = true;
         for (std::size_t k = 0; k < face.corners; ++k) has_uv = has_uv && face.uv[k] != no_index;

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -103,11 +104,18 @@ enum class Wrap { open, tube };
 /// Which way is up in a mesh's file.
 enum class UpAxis { y, z };
 
-/// A mesh as a scene names it: an OBJ file in the scene's folder.
+/// Which holes of a body are closed: those of up to a hundredth of its surface, or all.
+enum class MeshHoles { small, cap };
+
+/// A mesh as a scene names it, and how it is to be taken.
 struct MeshFile {
-    std::string file;  ///< empty: none
-    double scale = 1;  ///< metres per unit of the file
+    std::string file;           ///< empty: none
+    std::string object, group;  ///< the part of it that is meant; empty: all
+    double scale = 1;           ///< metres per unit of the file
     UpAxis up = UpAxis::y;
+    std::optional<bool> merge;  ///< vertices in one place are one; absent: a body's are, a cloth's are a problem
+    MeshHoles holes = MeshHoles::small;  ///< of bodies
+    double shell = 0;                    ///< m, of a body that is a surface with two sides; 0: it is solid
     std::string hash;  ///< of the file's content, in a run's own scene: the run is tied to it
 };
 
@@ -143,11 +151,15 @@ struct Cloth {
 
 enum class Shape { plane, sphere, box, cylinder, capsule, mesh };
 
-/// Samples of a mesh that deforms: a PC2 file, or OBJ files numbered where the name has '#'.
+/// How a mesh deforms: by the samples of a PC2 file, or of files numbered where the name has '#', or by an
+/// animation in the mesh's own file.
 struct MeshFrames {
-    std::string files;  ///< empty: it keeps its shape
-    double fps = 30;    ///< samples per second
-    double start = 0;   ///< s, when the first is due; before it the first holds, after the last the last
+    std::string files;      ///< empty: no samples
+    std::string animation;  ///< its name; empty: none
+    double fps = 30;        ///< samples per second
+    double start = 0;       ///< s, when the first is due; before it the first holds, after the last the last
+    bool loop = false;      ///< after the last the first follows at once, and so on
+    bool deforms() const { return !files.empty() || !animation.empty(); }
 };
 
 struct Friction {
@@ -303,8 +315,11 @@ struct Look {
 
 /// The whole scene. Gravity is present unless the scene says `gravity = [0, 0, 0]`.
 struct Scene {
-    std::string name;  ///< file name without its ending
-    std::string text;  ///< the file as read
+    std::string name;                ///< file name without its ending
+    std::string text;                ///< the file as read
+    std::string root;                ///< folder of the files that it names, from its own; empty: its own
+    std::filesystem::path home;      ///< that folder as the loader found it
+    std::vector<std::string> notes;  ///< what the loader passed over, mended or asks about
     Clip clip;
     Vec3 gravity{0, -9.81, 0};  ///< m/s²
     std::vector<Cloth> cloths;

@@ -17,6 +17,7 @@ inline constexpr std::string_view pin_target_words[] = {"corner", "edge",  "part
                                                         "disc",   "group", "within"};
 inline constexpr std::string_view wrap_words[] = {"open", "tube"};
 inline constexpr std::string_view up_axis_words[] = {"y", "z"};
+inline constexpr std::string_view mesh_hole_words[] = {"small", "cap"};
 inline constexpr std::string_view shape_words[] = {"plane", "sphere", "box", "cylinder", "capsule", "mesh"};
 inline constexpr std::string_view integrator_words[] = {
     "explicit", "implicit", "newton", "imex", "adaptive-imex", "bdf2", "adaptive-imex2", "auto"};
@@ -36,6 +37,9 @@ constexpr Words words_of(Wrap) {
 }
 constexpr Words words_of(UpAxis) {
     return up_axis_words;
+}
+constexpr Words words_of(MeshHoles) {
+    return mesh_hole_words;
 }
 constexpr Words words_of(Shape) {
     return shape_words;

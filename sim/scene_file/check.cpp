@@ -140,7 +140,7 @@ ContainedFile contained_file(const std::filesystem::path& folder, const std::str
     if (fs::path(name).is_absolute() || !inside)
         return {{},
                 fmt::format("the {} \"{}\" is outside the scene's folder", kind, name),
-                "put it beside the scene and name it relative to it"};
+                "put it beside the scene, or name the folder around it by root = \"...\" and it relative to that"};
     if (!fs::is_regular_file(file, error)) {
         const std::string maker = script_beside(home);
         return {{},
@@ -151,7 +151,7 @@ ContainedFile contained_file(const std::filesystem::path& folder, const std::str
     return {std::move(file), {}, {}};
 }
 
-void check_looks(const Checking& check, const std::filesystem::path& folder) {
+void check_looks(const Checking& check) {
     for (std::size_t i = 0; i < check.scene.cameras.size(); ++i) {
         const Camera& camera = check.scene.cameras[i];
         const std::string path = fmt::format("camera[{}]", i);
@@ -170,7 +170,7 @@ void check_looks(const Checking& check, const std::filesystem::path& folder) {
         const std::string& texture = check.scene.look.cloth[i].texture;
         if (texture.empty()) continue;
         const std::string path = fmt::format("look.cloth[{}].texture", i);
-        const ContainedFile found = contained_file(folder, texture, "texture");
+        const ContainedFile found = contained_file(check.scene.home, texture, "texture");
         if (!found.what.empty()) check.report(path, found.what, found.hint);
     }
 }

@@ -23,13 +23,13 @@ struct Checking {
     }
 };
 
-void check_clip(const Checking&);                                        ///< size, frames, steps in a frame
-void check_cloths(const Checking&);                                      ///< names, number of particles
-void check_solids(const Checking&);                                      ///< names, shapes, friction
-void check_start(const Checking&);                                       ///< no solid holds a cloth
-void check_looks(const Checking&, const std::filesystem::path& folder);  ///< cameras, textures
+void check_clip(const Checking&);  ///< size, frames, steps in a frame
+void check_cloths(const Checking&);  ///< names, number of particles
+void check_solids(const Checking&);  ///< names, shapes, friction
+void check_start(const Checking&);  ///< no solid holds a cloth
+void check_looks(const Checking&);  ///< cameras, textures
 
-/// A file that a scene names: it has to lie in the scene's folder, also once links are resolved.
+/// A file that a scene names: it has to lie in the scene's root, also once links are resolved.
 struct ContainedFile {
     std::filesystem::path file;  ///< where it is; empty with a problem
     std::string what, hint;      ///< the problem
@@ -39,7 +39,7 @@ ContainedFile contained_file(const std::filesystem::path& folder, const std::str
 
 /// Reads the meshes that the scene names into its cloths and solids, and reports what is wrong with them and
 /// with what refers to them (pins, regions). Before the checks above.
-void load_meshes(Scene&, const Places&, std::vector<SceneProblem>&, const std::filesystem::path& folder);
+void load_meshes(Scene&, const Places&, std::vector<SceneProblem>&);
 
 /// A pin just read, `names` being all its corners or edges: it has to catch a particle.
 void check_pin(const Fields& cloth_fields, Fields& pin_fields, const Cloth& cloth, const Pin& pin,

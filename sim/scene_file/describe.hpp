@@ -16,8 +16,8 @@ void describe(Fields&, Region&, const Cloth&);
 /// `names`: where a pin names several corners or edges, all of them; it is read as one pin for each.
 void describe(Fields&, Pin&, std::vector<std::string>& names);
 void describe(Fields&, Keyframe&);
-/// A mesh's file under the key `file`, and what else is said of it.
-void describe(Fields&, MeshFile&, const Key& file);
+/// A mesh's file under the key `file`, and what else is said of it; of a `body` or of cloth.
+void describe(Fields&, MeshFile&, const Key& file, bool body);
 void describe(Fields&, MeshFrames&, bool applies);
 void describe(Fields&, Solid&);
 void describe(Fields&, Wind&);

@@ -24,13 +24,31 @@ void describe_box(Fields& f, const Key& key, UvBox& box) {
 
 }  // namespace
 
-void describe(Fields& f, MeshFile& mesh, const Key& file) {
+void describe(Fields& f, MeshFile& mesh, const Key& file, bool body) {
     f.text(file, mesh.file, TextKind::path);
     const bool has = f.reading() ? f.says(file.name) : !file.applies || !mesh.file.empty();
     const bool applies = file.applies && has;
+    f.text({"mesh_object", "only this object of the file (an o line, a node of glTF)", false, applies}, mesh.object,
+           TextKind::name);
+    f.text({"mesh_group", "only this group of the file (a g line, a material of glTF)", false, applies}, mesh.group,
+           TextKind::name);
     f.number({"mesh_scale", "metres per unit of the mesh's file", false, applies}, mesh.scale,
              {1e-6, 1e6, false, "m"});
     f.choice({"mesh_up", "which axis of the mesh's file points up", false, applies}, mesh.up);
+    // What is mended differs from the rest in that it is written only where it was said.
+    bool merge = mesh.merge.value_or(body);
+    f.flag({"mesh_merge", "vertices in one place become one; default: of bodies, and asked about of cloth",
+            false, applies && (!f.writing() || mesh.merge)},
+           merge);
+    if (f.reading() && f.says("mesh_merge")) mesh.merge = merge;
+    if (body) {
+        f.choice({"mesh_holes", "which holes are closed: those of up to 1% of the surface, or all", false,
+                  applies && (!f.writing() || mesh.holes != MeshHoles::small)},
+                 mesh.holes);
+        f.number({"mesh_shell", "m, thickness of a surface with two sides; 0: a solid body", false,
+                  applies && (!f.writing() || mesh.shell > 0)},
+                 mesh.shell, {0, 100, false, "m"});
+    }
     f.text({"mesh_hash", "written by the tool: the file must have this content", false, applies}, mesh.hash,
            TextKind::name);
 }
@@ -38,7 +56,7 @@ void describe(Fields& f, MeshFile& mesh, const Key& file) {
 void describe(Fields& f, Cloth& cloth) {
     f.place(cloth.place);
     f.text({"name", "for messages and reports"}, cloth.name, TextKind::name);
-    describe(f, cloth.mesh, {"mesh", "OBJ file in the scene's folder; replaces particles and size"});
+    describe(f, cloth.mesh, {"mesh", "OBJ, PLY, STL or glTF file in the scene's folder; replaces particles and size"}, false);
     // A mesh brings its own particles and size; the schema shows the keys of both.
     const bool mesh = f.reading() ? f.says("mesh") : !cloth.mesh.file.empty();
     const bool grid = !mesh;

@@ -3,6 +3,9 @@
 namespace unravel::sim {
 
 void describe(Fields& f, Scene& scene) {
+    f.text({"root", "folder of the files that the scene names, from its own; default: its own", false,
+            !f.writing()},
+           scene.root, TextKind::path);
     f.table({"clip", "what is recorded"}, [&](Fields& g) { describe(g, scene.clip); });
     f.vector({"gravity", "m/s², acceleration of free fall; [0, 0, 0] switches it off"}, scene.gravity,
              {-1000, 1000, false, "m/s²"});

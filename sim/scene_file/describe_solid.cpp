@@ -19,11 +19,19 @@ void describe(Fields& f, MeshFrames& frames, bool applies) {
     f.text({"mesh_frames", "how the mesh deforms: a PC2 file, or OBJ files numbered where the name has '#'",
             false, applies},
            frames.files, TextKind::path);
-    const bool moves =
-        applies && (f.reading() ? f.says("mesh_frames") : !f.writing() || !frames.files.empty());
-    f.number({"mesh_fps", "samples per second", false, moves}, frames.fps, {1e-3, 1e5});
-    f.number({"mesh_start", "s, when the first sample is due", false, moves}, frames.start,
-             {-3600, 3600, false, "s"});
+    f.text({"animation", "how the mesh deforms: an animation of its glTF file, by its name", false, applies},
+           frames.animation, TextKind::name);
+    if (f.says("mesh_frames") && f.says("animation"))
+        f.problem("animation", "a mesh that deforms in two ways", "say mesh_frames or animation");
+    const auto some = [&](bool said, bool there) {
+        return applies && (f.reading() ? said : !f.writing() || there);
+    };
+    const bool samples = some(f.says("mesh_frames"), !frames.files.empty());
+    const bool moves = some(f.says("mesh_frames") || f.says("animation"), frames.deforms());
+    f.number({"mesh_fps", "samples per second", false, samples}, frames.fps, {1e-3, 1e5});
+    f.number({"mesh_start", "s, when the first sample, or the animation's beginning, is due", false, moves},
+             frames.start, {-3600, 3600, false, "s"});
+    f.flag({"mesh_loop", "begin again at the end", false, moves && (!f.writing() || frames.loop)}, frames.loop);
 }
 
 void describe(Fields& f, Solid& solid) {
@@ -33,8 +41,9 @@ void describe(Fields& f, Solid& solid) {
     const Shape shape = solid.shape;
     const bool mesh = shape == Shape::mesh;
     describe(f, solid.mesh,
-             {"mesh", "OBJ file in the scene's folder: a closed body", false,
-              mesh || (!f.reading() && !f.writing())});
+             {"mesh", "OBJ, PLY, STL or glTF file in the scene's folder: a closed body", false,
+              mesh || (!f.reading() && !f.writing())},
+             true);
     if (f.reading() && mesh && !f.says("mesh"))
         f.problem("shape", "a mesh without a file", "write mesh = \"body.obj\"");
     describe(f, solid.frames, mesh || (!f.reading() && !f.writing()));

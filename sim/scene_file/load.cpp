@@ -88,13 +88,17 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
     describe(reader, scene);
     reader.finish();
 
-    load_meshes(scene, places, problems, folder);
+    scene.home = (folder.empty() ? std::filesystem::path(".") : folder) / scene.root;
+    if (!scene.root.empty() && !std::filesystem::is_directory(scene.home))
+        problems.push_back({places.at("root"), fmt::format("no folder \"{}\"", scene.root),
+                            "it is looked for from the scene's own folder"});
+    load_meshes(scene, places, problems);
     const Checking checking{scene, places, problems};
     check_clip(checking);
     check_cloths(checking);
     check_solids(checking);
     check_start(checking);
-    check_looks(checking, folder);
+    check_looks(checking);
     stop_on_problems();
 
     complete(scene, places.has("solver.step"));

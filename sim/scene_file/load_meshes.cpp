@@ -1,248 +1,122 @@
-// The meshes of a scene: read, checked, and tied to the scene by their hash.
+// The meshes of a scene: read, mended, checked, and tied to the scene by their hash.
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
-#include "base/hash.hpp"
-#include "base/whole_file.hpp"
 #include "sim/mesh/check_mesh.hpp"
 #include "sim/mesh/mesh_cloth.hpp"
-#include "sim/mesh/mesh_solid.hpp"
-#include "sim/mesh/pc2.hpp"
 #include "sim/mesh/placement.hpp"
-#include "sim/scene/limits.hpp"
+#include "sim/mesh/repair.hpp"
 #include "sim/scene_file/check.hpp"
-#include "sim/scene_file/similar.hpp"
+#include "sim/scene_file/mesh_files.hpp"
 
 namespace unravel::sim {
 
 namespace {
 
-namespace fs = std::filesystem;
+constexpr std::uint64_t no_bytes_yet = 14695981039346656037ull;  // what hashes start from
 
-class MeshLoader {
-public:
-    MeshLoader(const Places& places, std::vector<SceneProblem>& problems, const fs::path& folder)
-        : places_(places), problems_(problems), folder_(folder) {}
+// Holes of up to this share of a body's surface are closed without being asked for.
+constexpr double small_hole = 0.01;
 
-    void load(Cloth& cloth, const std::string& path) {
-        const std::size_t before = problems_.size();
-        ObjMesh mesh;
-        std::uint64_t hash = 14695981039346656037ull;
-        if (!read_obj(path + ".mesh", cloth.mesh.file, mesh, hash)) return;
-        std::vector<MeshFault> faults;
-        check_cloth_mesh(mesh, faults, max_faults);
-        report(path + ".mesh", cloth.mesh.file, faults);
-        if (problems_.size() > before || !tie(cloth.mesh, path, hash)) return;
-        cloth.geometry =
-            std::make_shared<MeshCloth>(make_mesh_cloth(std::move(mesh), cloth.mesh.scale, cloth.mesh.up));
-        cloth.particles = {static_cast<int>(cloth.geometry->rest.size()), 1};
-        const Vec3 extent = cloth.geometry->extent();
-        cloth.size = {extent.maxCoeff(), extent.sum() - extent.maxCoeff() - extent.minCoeff()};
-        check_groups(cloth, path);
+// A cloth wider than the first, or narrower than the second, is more often a wrong unit than meant. [m]
+constexpr double widest_cloth = 30, narrowest_cloth = 0.01;
+
+void ask_about_size(const MeshFiles& files, const Cloth& cloth) {
+    const double width = cloth.geometry->extent().maxCoeff();
+    if (width >= narrowest_cloth && width <= widest_cloth) return;
+    // What most files are in: centimetres, millimetres or inches of something between hanky and tent.
+    double scale = cloth.mesh.scale;
+    for (const double unit : {0.01, 0.001, 0.0254, 100.0, 1000.0}) {
+        if (width * unit < 0.2 || width * unit > 5) continue;
+        scale *= unit;
+        break;
     }
+    files.note(fmt::format("{}: the cloth is {:.3g} m wide: is that meant?{}", cloth.mesh.file, width,
+                           scale != cloth.mesh.scale
+                               ? fmt::format(" With mesh_scale = {:g} it is {:.3g} m", scale,
+                                             width * scale / cloth.mesh.scale)
+                               : ""));
+}
 
-    void load(Solid& solid, const std::string& path) {
-        const std::size_t before = problems_.size();
-        ObjMesh mesh;
-        std::uint64_t hash = 14695981039346656037ull;
-        if (!read_obj(path + ".mesh", solid.mesh.file, mesh, hash)) return;
-        std::vector<MeshFault> faults;
-        check_solid_mesh(mesh, faults, max_faults);
-        report(path + ".mesh", solid.mesh.file, faults);
-        if (problems_.size() > before) return;
-        MeshSolid body;
-        body.rest = std::move(mesh.positions);
-        body.triangles = triangles_of(body.rest, mesh.faces);
-        if (!solid.frames.files.empty()) {
-            body.fps = solid.frames.fps;
-            body.start = solid.frames.start;
-            load_samples(solid.frames.files, path + ".mesh_frames", body, hash);
-        }
-        if (problems_.size() > before || !tie(solid.mesh, path, hash)) return;
-        const auto place = [&](Vec3& x) {
-            x = from_file(x, solid.mesh.scale, solid.mesh.up);
-            body.reach = std::max(body.reach, x.norm());
-        };
-        for (Vec3& x : body.rest) place(x);
-        for (std::vector<Vec3>& sample : body.samples) {
-            for (Vec3& x : sample) place(x);
-        }
-        if (body.deforms()) {
-            const std::vector<Vec3> undeformed = std::move(body.rest);
-            body.positions_at(0, body.rest);
-        }
-        body.tree = MeshTree(body.rest, body.triangles);
-        solid.geometry = std::make_shared<MeshSolid>(std::move(body));
+void check_group(const MeshFiles& files, const Cloth& cloth, const std::string& path,
+                 const std::string& group) {
+    const auto& groups = cloth.geometry->groups;
+    if (groups.contains(group)) return;
+    std::vector<std::string_view> names;
+    for (const auto& [name, vertices] : groups) names.push_back(name);
+    files.problem(path, fmt::format("the mesh has no group \"{}\"", group),
+                  MeshFiles::other_names(group, std::move(names), "the mesh has no groups (g lines)"));
+}
+
+void check_groups(const MeshFiles& files, const Cloth& cloth, const std::string& path) {
+    for (std::size_t k = 0; k < cloth.regions.size(); ++k) {
+        if (!cloth.regions[k].group.empty())
+            check_group(files, cloth, fmt::format("{}.region[{}].group", path, k), cloth.regions[k].group);
     }
-
-private:
-    void problem(const std::string& path, std::string what, std::string hint) {
-        problems_.push_back({places_.at(path), std::move(what), std::move(hint)});
+    for (std::size_t k = 0; k < cloth.pins.size(); ++k) {
+        const Pin& pin = cloth.pins[k];
+        const std::string at = fmt::format("{}.pin[{}].", path, k);
+        if (pin.target == PinTarget::group) check_group(files, cloth, at + "group", pin.group);
+        if (pin.target == PinTarget::within && files.places().sound(at + "within") &&
+            pinned_particles(cloth, pin).empty())
+            files.problem(at + "within", "the pin catches no particle", "no vertex starts in this box");
     }
+}
 
-    void report(const std::string& path, const std::string& file, const std::vector<MeshFault>& faults) {
-        for (const MeshFault& fault : faults) {
-            const std::string where =
-                fault.line > 0 ? fmt::format("{}:{}", file, fault.line) : std::string(file);
-            problem(path, fmt::format("{}: {}", where, fault.what), fault.hint);
-        }
-        if (faults.size() == max_faults)
-            problem(path, fmt::format("{} may have more faults than these", file), "mend them first");
+void load_mesh(const MeshFiles& files, Cloth& cloth, const std::string& path) {
+    std::uint64_t hash = no_bytes_yet;
+    const bool apart = cloth.mesh.merge == false;
+    std::shared_ptr<const Figure> none;
+    std::optional<PolygonMesh> mesh = files.read_mesh(
+        cloth.mesh, path + ".mesh", cloth.mesh.merge.value_or(false), hash,
+        [&](PolygonMesh& one, MeshMessages& said) { check_cloth_mesh(one, apart, said); }, {}, none);
+    if (!mesh || !files.tie(cloth.mesh, path, hash)) return;
+    cloth.geometry =
+        std::make_shared<MeshCloth>(make_mesh_cloth(std::move(*mesh), cloth.mesh.scale, cloth.mesh.up));
+    cloth.particles = {static_cast<int>(cloth.geometry->rest.size()), 1};
+    const Vec3 extent = cloth.geometry->extent();
+    cloth.size = {extent.maxCoeff(), extent.sum() - extent.maxCoeff() - extent.minCoeff()};
+    ask_about_size(files, cloth);
+    check_groups(files, cloth, path);
+}
+
+void load_mesh(const MeshFiles& files, Solid& solid, const std::string& path) {
+    std::uint64_t hash = no_bytes_yet;
+    const MeshFile& file = solid.mesh;
+    const bool solid_body = file.shell == 0;
+    std::shared_ptr<const Figure> figure;
+    std::optional<PolygonMesh> mesh =
+        files.read_mesh(file, path + ".mesh", file.merge.value_or(true), hash,
+                        [&](PolygonMesh& one, MeshMessages& said) {
+                            if (solid_body) {
+                                cap_holes(one, file.holes == MeshHoles::cap ? HUGE_VAL : small_hole, said);
+                                turn_outward(one, said);
+                            }
+                            check_solid_mesh(one, solid_body, said);
+                        },
+                        solid.frames.animation, figure);
+    if (!mesh) return;
+    MeshSolid body;
+    if (!solid.frames.files.empty()) {
+        files.read_samples(solid.frames.files, path + ".mesh_frames", mesh->file_vertices, body, hash);
+        if (!body.deforms()) return;
     }
-
-    // Bytes of a file in the scene's folder, added to the hash; false with a problem.
-    bool read(const std::string& path, const std::string& name, std::vector<std::uint8_t>& bytes,
-              std::uint64_t& hash) {
-        const ContainedFile found = contained_file(folder_, name, "mesh");
-        if (!found.what.empty()) {
-            problem(path, found.what, found.hint);
-            return false;
-        }
-        try {
-            bytes = read_whole_file(found.file, max_mesh_bytes);
-        } catch (const InputError& error) {
-            problem(path, error.what(), "");
-            return false;
-        }
-        hash = hash_bytes(bytes.data(), bytes.size(), hash);
-        return true;
-    }
-
-    bool read_obj(const std::string& path, const std::string& name, ObjMesh& mesh, std::uint64_t& hash) {
-        std::vector<std::uint8_t> bytes;
-        if (!read(path, name, bytes, hash)) return false;
-        std::vector<MeshFault> faults;
-        mesh = parse_obj({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, faults, max_faults);
-        report(path, name, faults);
-        return faults.empty();
-    }
-
-    // A run's scene names the content that it was made with; any other scene takes what is there.
-    bool tie(MeshFile& mesh, const std::string& path, std::uint64_t hash) {
-        const std::string now = fmt::format("{:016x}", hash);
-        if (!mesh.hash.empty() && mesh.hash != now) {
-            problem(path + ".mesh_hash", fmt::format("the mesh \"{}\" has changed", mesh.file),
-                    "put back the file that the run was made with, or remove this line to take the new one");
-            return false;
-        }
-        mesh.hash = now;
-        return true;
-    }
-
-    // Quads are cut along the shorter diagonal.
-    static std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<Vec3>& x,
-                                                                  const std::vector<ObjMesh::Face>& faces) {
-        std::vector<std::array<std::uint32_t, 3>> out;
-        for (const ObjMesh::Face& face : faces) {
-            const auto& [a, b, c, d] = face.vertex;
-            if (face.corners == 3) {
-                out.push_back({a, b, c});
-            } else if ((x[a] - x[c]).squaredNorm() <= (x[b] - x[d]).squaredNorm()) {
-                out.push_back({a, b, c});
-                out.push_back({a, c, d});
-            } else {
-                out.push_back({a, b, d});
-                out.push_back({b, c, d});
-            }
-        }
-        return out;
-    }
-
-    void load_samples(const std::string& name, const std::string& path, MeshSolid& body,
-                      std::uint64_t& hash) {
-        if (name.find('#') != std::string::npos) {
-            load_sequence(name, path, body, hash);
-            return;
-        }
-        std::vector<std::uint8_t> bytes;
-        if (!read(path, name, bytes, hash)) return;
-        Pc2Header header;
-        const std::string wrong = read_pc2(bytes, body.rest.size(), max_sample_bytes, header, body.samples);
-        if (!wrong.empty())
-            problem(path, fmt::format("{}: {}", name, wrong), "bake the cache anew from this mesh");
-        body.sample_files = {name};
-    }
-
-    void load_sequence(const std::string& name, const std::string& path, MeshSolid& body,
-                       std::uint64_t& hash) {
-        const std::size_t first = name.find('#'), last = name.find_first_not_of('#', first);
-        const std::size_t digits = (last == std::string::npos ? name.size() : last) - first;
-        const auto numbered = [&](int k) {
-            return fmt::format("{}{:0{}}{}", name.substr(0, first), k, digits, name.substr(first + digits));
-        };
-        std::error_code error;
-        int number = fs::exists(folder_ / numbered(0), error) ? 0 : 1;
-        for (; number <= max_frames; ++number) {
-            const std::string file = numbered(number);
-            // The first must be there; the sequence ends before the first that is not.
-            if (!body.samples.empty() && !fs::exists(folder_ / file, error)) return;
-            ObjMesh mesh;
-            if (!read_obj(path, file, mesh, hash)) return;
-            if (mesh.positions.size() != body.rest.size()) {
-                problem(path,
-                        fmt::format("{}: it has {} vertices, the mesh {}", file, mesh.positions.size(),
-                                    body.rest.size()),
-                        "every file of a sequence is the same mesh, moved");
-                return;
-            }
-            if ((body.samples.size() + 1) * body.rest.size() * sizeof(Vec3) > max_sample_bytes) {
-                problem(path, fmt::format("{}: the samples are more than a run can hold", file), "");
-                return;
-            }
-            body.samples.push_back(std::move(mesh.positions));
-            body.sample_files.push_back(file);
-        }
-    }
-
-    void check_group(const Cloth& cloth, const std::string& path, const std::string& group) {
-        const auto& groups = cloth.geometry->groups;
-        if (groups.contains(group)) return;
-        std::vector<std::string_view> names;
-        for (const auto& [name, vertices] : groups) names.push_back(name);
-        const std::string_view near = most_similar(group, names);
-        std::string hint = "the mesh has no groups (g lines)";
-        if (!near.empty()) {
-            hint = fmt::format("did you mean \"{}\"?", near);
-        } else if (!names.empty()) {
-            names.resize(std::min<std::size_t>(names.size(), 12));
-            hint = fmt::format("it has {}", fmt::join(names, ", "));
-        }
-        problem(path, fmt::format("the mesh has no group \"{}\"", group), hint);
-    }
-
-    void check_groups(const Cloth& cloth, const std::string& path) {
-        for (std::size_t k = 0; k < cloth.regions.size(); ++k) {
-            if (!cloth.regions[k].group.empty())
-                check_group(cloth, fmt::format("{}.region[{}].group", path, k), cloth.regions[k].group);
-        }
-        for (std::size_t k = 0; k < cloth.pins.size(); ++k) {
-            const Pin& pin = cloth.pins[k];
-            const std::string at = fmt::format("{}.pin[{}].", path, k);
-            if (pin.target == PinTarget::group) check_group(cloth, at + "group", pin.group);
-            if (pin.target == PinTarget::within && places_.sound(at + "within") &&
-                pinned_particles(cloth, pin).empty())
-                problem(at + "within", "the pin catches no particle", "no vertex starts in this box");
-        }
-    }
-
-    const Places& places_;
-    std::vector<SceneProblem>& problems_;
-    const fs::path& folder_;
-};
+    if (!files.tie(solid.mesh, path, hash)) return;
+    finish_solid(body, std::move(*mesh), file, solid.frames, std::move(figure));
+    solid.geometry = std::make_shared<MeshSolid>(std::move(body));
+}
 
 }  // namespace
 
-void load_meshes(Scene& scene, const Places& places, std::vector<SceneProblem>& problems,
-                 const fs::path& folder) {
-    const fs::path home = folder.empty() ? fs::path(".") : folder;
-    MeshLoader loader(places, problems, home);
+void load_meshes(Scene& scene, const Places& places, std::vector<SceneProblem>& problems) {
+    const MeshFiles files(scene, places, problems);
     const auto load = [&](auto& things, const char* kind) {
         for (std::size_t i = 0; i < things.size(); ++i) {
             const std::string path = fmt::format("{}[{}]", kind, i);
-            if (!things[i].mesh.file.empty() && places.sound(path + ".mesh")) loader.load(things[i], path);
+            if (!things[i].mesh.file.empty() && places.sound(path + ".mesh"))
+                load_mesh(files, things[i], path);
         }
     };
     load(scene.cloths, "cloth");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "sim/mesh/mesh_facts.hpp"
 #include "sim/run/simulate.hpp"
 #include "sim/scene_file/load.hpp"
 #include "sim/step/explicit_limit.hpp"
@@ -55,6 +56,32 @@ double picture_seconds(const Scene& scene) {
     return scene.clip.frames() * frame_pictures * area / (1280.0 * 720.0);
 }
 
+// Calls visit(kind, name, file, facts) for every mesh of the scene.
+template <class Visit>
+void for_each_mesh(const Scene& scene, Visit&& visit) {
+    for (const Cloth& cloth : scene.cloths) {
+        if (cloth.geometry) visit("cloth", cloth.name, cloth.mesh.file, facts_of(*cloth.geometry));
+    }
+    for (const Solid& solid : scene.solids) {
+        if (solid.geometry) visit("solid", solid.name, solid.mesh.file, facts_of(*solid.geometry));
+    }
+}
+
+nlohmann::ordered_json meshes_json(const Scene& scene) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for_each_mesh(scene, [&](const char* kind, const std::string& name, const std::string& file,
+                             const MeshFacts& facts) {
+        json.push_back({{kind, name},
+                        {"file", file},
+                        {"size", {facts.extent.x(), facts.extent.y(), facts.extent.z()}},
+                        {"vertices", facts.vertices},
+                        {"spacing", facts.spacing},
+                        {"holes", nlohmann::ordered_json::array()}});
+        for (const auto& border : facts.borders) json.back()["holes"].push_back(border.size());
+    });
+    return json;
+}
+
 // Two digits, and never more than it.
 double round_down(double step) {
     const double unit = std::pow(10.0, std::floor(std::log10(step)) - 1);
@@ -63,7 +90,7 @@ double round_down(double step) {
 
 int check(const CheckOptions& options) {
     const Scene scene = load_scene(options.scene, options.overrides);
-    check_textures(scene, options.scene.has_parent_path() ? options.scene.parent_path() : ".");
+    check_textures(scene, scene.home);
     Simulation simulation = start_simulation(scene);
     require_explicit_stability(simulation.model, simulation.options, scene.solver.step);
     const std::vector<Effect> effects = list_effects(scene);
@@ -85,6 +112,8 @@ int check(const CheckOptions& options) {
                                     {"estimated_seconds", seconds},
                                     {"estimated_picture_seconds", pictures},
                                     {"bend_springs_limited", limit.limited}};
+        json["meshes"] = meshes_json(scene);
+        json["notes"] = scene.notes;
         for (const Effect& e : effects) json["effects"][e.name] = {{"on", e.on}, {"because", e.because}};
         json["plan"] = plan_json(plan);
         fmt::print("{}\n", json.dump(2));
@@ -95,6 +124,10 @@ int check(const CheckOptions& options) {
                simulation.model.springs.stretch_count,
                simulation.model.springs.size() - simulation.model.springs.stretch_count,
                simulation.model.bends.size());
+    for_each_mesh(scene, [](const char* kind, const std::string& name, const std::string& file,
+                            const MeshFacts& facts) {
+        fmt::print("  {} \"{}\": {}, {}\n", kind, name, file, facts_text(facts));
+    });
     fmt::print("  {} frames at {} per second, {} steps of {} s\n", scene.clip.frames(), scene.clip.fps, steps,
                scene.solver.step);
     fmt::print("  about {:.0f} MB of memory, on one core {} of simulation and {} of pictures\n",
@@ -102,6 +135,7 @@ int check(const CheckOptions& options) {
     for (const auto& [name, words] : plan_words(plan)) fmt::print("  {:<19} {}\n", name, words);
     for (const Effect& e : effects)
         fmt::print("  {:<15} {} because {}\n", e.name, e.on ? "on, " : "off,", e.because);
+    for (const std::string& note : scene.notes) fmt::print("  note: {}\n", note);
     if (limit.limited > 0) {
         fmt::print(
             "  note: {} of {} bend springs resist the onset of buckling less than the material would, so "

@@ -21,6 +21,7 @@ namespace {
 struct ExportOptions {
     std::filesystem::path run, folder;
     std::string format, frames;
+    bool cameras = false;  ///< into glb
     OutputOptions output;
 };
 
@@ -44,6 +45,7 @@ int export_run(const ExportOptions& options) {
     ExportSource source{run.model,          {}, range.first, std::min(range.last, frames - 1),
                         run.scene.clip.fps, {}, {}};
     for (const ClothPatch& patch : run.model.cloths) source.surfaces.push_back(surface_of(patch));
+    add_surroundings(source, run.scene, options.cameras);
     source.read = [&](int frame) { return run.read(frame); };
     const std::string own_name = std::filesystem::weakly_canonical(options.run).filename().string();
     const std::string name = own_name.empty() ? "unravel" : own_name;
@@ -85,6 +87,7 @@ void add_export(CommandLine& line) {
         ->required();
     command.add_option("-o", o.folder, "folder for the files (default: RUN_DIR/export/FORMAT)");
     add_frames(command, o.frames);
+    command.add_flag("--cameras", o.cameras, "with the scene's cameras, into glb");
     add_output_options(command, o.output);
 }
 

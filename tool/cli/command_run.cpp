@@ -43,6 +43,7 @@ void print_summary(const OutputOptions& options, const RunFolder& folder,
     if (totals.contains("rvm_saved"))
         fmt::print(", {:.1f}% fewer RVMs than whole", 100 * totals["rvm_saved"].get<double>());
     fmt::print("\n");
+    for (const auto& warning : json["warnings"]) fmt::print("  note: {}\n", warning.get<std::string>());
     if (json.contains("videos")) {
         for (const auto& video : json["videos"])
             fmt::print("  {}\n", (folder.root / video.get<std::string>()).string());
@@ -56,8 +57,7 @@ int make_run(const fs::path& file, const RunOptions& options, bool pictures) {
     Scene scene = load_scene(file, options.overrides);
     const RunFolder folder{options.folder.empty() ? fs::path("output") / scene.name : options.folder};
     ClipOptions clip_options = clip_options_of(options.pictures, scene);
-    // Relative to nothing would mean that there are none.
-    clip_options.textures = file.has_parent_path() ? file.parent_path() : ".";
+    clip_options.textures = scene.home;
     Simulation simulation = start_simulation(scene);
     simulation.options.compare_whole = options.compare_whole;
     if (!options.allow_unstable)

@@ -13,6 +13,29 @@
 
 namespace unravel::tool {
 
+/// What a cloth looks like in programs that know no weaves.
+struct ExportLook {
+    Rgb front{140, 64, 74};
+    std::vector<std::uint8_t> texture = {};  ///< a PNG file's bytes, as they are; empty: none
+};
+
+/// A solid that stands or moves beside the cloths.
+struct ExportSolid {
+    std::string name;
+    Rgb color;
+    std::vector<Vec3f> positions;                         ///< (vertices) in its own frame [m]
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise from outside
+    std::function<Eigen::Isometry3d(double t)> pose;      ///< own frame to world, at t [s]
+    bool moves = false;                                   ///< the pose is not the same all the time
+    std::function<void(double t, std::vector<Vec3>& out)> shape = {};  ///< positions, where it deforms [m]
+};
+
+struct ExportCamera {
+    std::string name;
+    double aspect = 1;  ///< width over height
+    std::function<CameraView(double t)> view;
+};
+
 /// A cached run's geometry on its way into other programs. World: metres, right-handed, y up, as everywhere
 /// here. Frames are read one at a time, so that memory does not grow with the clip.
 struct ExportSource {
@@ -22,6 +45,9 @@ struct ExportSource {
     int fps = 30;
     std::function<FrameRecord(int frame)> read;  ///< throws InputError
     std::function<bool(int frame)> done;         ///< after each frame; false: stop, nothing is kept
+    std::vector<ExportLook> looks = {};          ///< (cloths), or none
+    std::vector<ExportSolid> solids = {};
+    std::vector<ExportCamera> cameras = {};
     int frames() const { return last - first + 1; }
 };
 
@@ -41,8 +67,13 @@ Written export_ply(const ExportSource& source, const std::filesystem::path& fold
 /// moves it. Positions are rounded to floats once.
 Written export_point_cache(const ExportSource& source, const std::filesystem::path& folder, bool mdd);
 
-/// NAME.glb, binary glTF 2.0: every cloth a mesh with one morph target per frame and an animation that is at
-/// the frame's own target at the frame's time. `name` of the file.
+/// Gives a source what is beside the scene's cloths: their looks, the solids, and the cameras if asked for.
+/// Throws InputError where a texture can't be read.
+void add_surroundings(ExportSource& source, const Scene& scene, bool cameras);
+
+/// NAME.glb, binary glTF 2.0: every cloth, and every solid that deforms, a mesh with one morph target per
+/// frame and an animation that is at the frame's own target at the frame's time; other solids and cameras nodes that
+/// move. Textures are inside. `name` of the file.
 Written export_glb(const ExportSource& source, const std::filesystem::path& folder, const std::string& name);
 
 /// A cloth's part of a state. [m]

@@ -1,26 +1,21 @@
-// Binary glTF 2.0 (Khronos, sections 3.6 and 3.11). The first frame is the base mesh; every further frame is
-// a morph target, and the animation gives it weight 1 at its time.
+// Binary glTF 2.0 (Khronos, sections 3.6 to 3.11). The first frame is the base mesh; every further frame is
+// a morph target, and the animation gives it weight 1 at its time. What only moves as a whole is a node that
+// does.
 
-#include <fmt/format.h>
-
-#include <bit>
-#include <cstring>
-#include <limits>
+#include <Eigen/Geometry>
+#include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <numbers>
 
-#include "base/whole_file.hpp"
 #include "sim/mesh/mesh_cloth.hpp"
 #include "tool/export/export.hpp"
+#include "tool/export/glb_binary.hpp"
 
 namespace unravel::tool {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-static_assert(std::endian::native == std::endian::little, "glTF is little-endian");
-
-constexpr int float_type = 5126, index_type = 5125;
 
 // A cloth's vertices as glTF has them: vertex v < particles is particle v, those that follow repeat a
 // particle for each further texture coordinate that it has.
@@ -77,164 +72,268 @@ Posture shape_of(const ClothSurface& surface, const Vertices& vertices, std::spa
 }
 
 // What a target adds to the base.
-Posture difference(const Posture& base, const Posture& other) {
-    Posture out = other;
+Posture difference(const Posture& base, Posture other) {
     for (std::size_t v = 0; v < base.positions.size(); ++v) {
-        out.positions[v] -= base.positions[v];
-        out.normals[v] -= base.normals[v];
+        other.positions[v] -= base.positions[v];
+        other.normals[v] -= base.normals[v];
     }
+    return other;
+}
+
+// A cloth, or a solid that deforms.
+struct GlbShape {
+    ClothSurface surface;
+    Vertices vertices;
+    std::function<std::vector<Vec3>(const FrameRecord&)> positions;
+    std::size_t mesh = 0;  // its number in the document
+    Posture base;
+
+    Posture at(const FrameRecord& record) const { return shape_of(surface, vertices, positions(record)); }
+};
+
+ClothSurface surface_of_solid(const ExportSolid& solid) {
+    ClothSurface out;
+    for (const auto& [a, b, c] : solid.triangles)
+        out.faces.push_back({3, {a, b, c, no_index}, {no_index, no_index, no_index, no_index}});
     return out;
 }
 
-// The JSON part, with the byte ranges of the binary one in the order in which they will be written.
-class GlbLayout {
-public:
-    Json json{
-        {"asset", {{"version", "2.0"}, {"generator", "unravel"}, {"extras", {{"units", "metres, y up"}}}}},
-        {"scene", 0},
-        {"materials", Json::array({{{"doubleSided", true},
-                                    {"pbrMetallicRoughness",
-                                     {{"baseColorFactor", {0.55, 0.06, 0.08, 1.0}},
-                                      {"metallicFactor", 0.0},
-                                      {"roughnessFactor", 0.9}}}}})}};
+// Colours of the format are linear.
+Json linear(const Rgb& color) {
+    const auto one = [](std::uint8_t byte) {
+        const double c = byte / 255.0;
+        return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+    };
+    return {one(color.r), one(color.g), one(color.b), 1.0};
+}
 
-    int accessor(std::size_t count, const char* type, std::size_t item_bytes, int component,
-                 Json extra = {}) {
-        json["bufferViews"].push_back(
-            {{"buffer", 0}, {"byteOffset", bytes}, {"byteLength", count * item_bytes}});
-        Json a{{"bufferView", views_}, {"componentType", component}, {"count", count}, {"type", type}};
-        if (extra.is_object()) a.update(extra);
-        json["accessors"].push_back(std::move(a));
-        bytes += count * item_bytes;
-        return views_++;
+// Where a camera is: it looks along its own −z.
+Eigen::Isometry3d placed(const CameraView& view) {
+    const Vec3 position = view.position.cast<double>(), target = view.target.cast<double>();
+    const Vec3 back = (position - target).normalized();
+    Vec3 up = view.up.cast<double>();
+    if (back.cross(up).norm() < 1e-6) up = Vec3::UnitZ();
+    const Vec3 right = up.cross(back).normalized();
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() << right, back.cross(right), back;
+    pose.translation() = position;
+    return pose;
+}
+
+class GlbExport {
+public:
+    GlbExport(const ExportSource& source, const std::string& name) : source_(source) {
+        document_["asset"] = {
+            {"version", "2.0"}, {"generator", "unravel"}, {"extras", {{"units", "metres, y up"}}}};
+        document_["scene"] = 0;
+        document_["scenes"] = Json::array({{{"nodes", Json::array()}}});
+        animation_ = {{"name", name}, {"samplers", Json::array()}, {"channels", Json::array()}};
     }
-    int vectors(const std::vector<Eigen::Vector3f>& values) {
-        Eigen::Vector3f low = values.front(), high = low;
-        for (const Eigen::Vector3f& v : values) {
-            low = low.cwiseMin(v);
-            high = high.cwiseMax(v);
-        }
-        return accessor(values.size(), "VEC3", 12, float_type,
-                        {{"min", {low.x(), low.y(), low.z()}}, {"max", {high.x(), high.y(), high.z()}}});
+
+    Written write(const std::filesystem::path& target) {
+        const FrameRecord first = source_.read(source_.first);
+        for (std::size_t c = 0; c < source_.surfaces.size(); ++c) add_cloth(c, first);
+        for (const ExportSolid& solid : source_.solids) add_solid(solid, first);
+        for (const ExportCamera& camera : source_.cameras) add_camera(camera);
+        add_targets();
+        animate_targets();
+        animate_nodes();
+        if (!animation_["channels"].empty()) document_["animations"] = Json::array({animation_});
+        const bool whole = write_glb(target, document_, binary_, [&](WholeFile& file) { return write_targets(file); });
+        return whole ? Written{target} : Written{};
     }
-    std::size_t bytes = 0;
 
 private:
-    int views_ = 0;
+    std::size_t frames() const { return static_cast<std::size_t>(source_.frames()); }
+    double time_of(std::size_t k) const { return (source_.first + static_cast<double>(k)) / source_.fps; }
+
+    std::size_t add_node(Json node) {
+        document_["nodes"].push_back(std::move(node));
+        const std::size_t number = document_["nodes"].size() - 1;
+        document_["scenes"][0]["nodes"].push_back(number);
+        return number;
+    }
+
+    // Two-sided, for cloth has two; a picture in the file's own bytes.
+    std::size_t add_material(const std::string& name, const Rgb& color, const std::vector<std::uint8_t>& texture,
+                             double roughness) {
+        Json surface{{"baseColorFactor", texture.empty() ? linear(color) : Json{1.0, 1.0, 1.0, 1.0}},
+                     {"metallicFactor", 0.0},
+                     {"roughnessFactor", roughness}};
+        if (!texture.empty()) {
+            document_["images"].push_back({{"bufferView", binary_.file(texture)}, {"mimeType", "image/png"}});
+            if (!document_.contains("samplers")) document_["samplers"] = Json::array({{{"wrapS", 10497}, {"wrapT", 10497}}});
+            document_["textures"].push_back({{"sampler", 0}, {"source", document_["images"].size() - 1}});
+            surface["baseColorTexture"] = {{"index", document_["textures"].size() - 1}};
+        }
+        document_["materials"].push_back({{"name", name}, {"doubleSided", true}, {"pbrMetallicRoughness", surface}});
+        return document_["materials"].size() - 1;
+    }
+
+    std::size_t add_mesh(const std::string& name, const Posture& base, const Vertices& vertices, bool textured,
+                         std::size_t material) {
+        Json primitive{{"attributes",
+                        {{"POSITION", binary_.vectors(base.positions)}, {"NORMAL", binary_.vectors(base.normals)}}},
+                       {"material", material}};
+        if (textured) primitive["attributes"]["TEXCOORD_0"] = binary_.pairs(vertices.uv);
+        primitive["indices"] = binary_.indices(vertices.indices);
+        document_["meshes"].push_back({{"name", name}, {"primitives", Json::array({primitive})}});
+        return document_["meshes"].size() - 1;
+    }
+
+    void add_shape(const std::string& name, GlbShape shape, const FrameRecord& first, std::size_t material) {
+        shape.base = shape.at(first);
+        shape.mesh = add_mesh(name, shape.base, shape.vertices, !shape.surface.uvs.empty(), material);
+        node_of_shape_.push_back(add_node({{"mesh", shape.mesh}, {"name", name}}));
+        shapes_.push_back(std::move(shape));
+    }
+
+    void add_cloth(std::size_t c, const FrameRecord& first) {
+        const ClothPatch& patch = source_.model.cloths[c];
+        const ClothSurface& surface = source_.surfaces[c];
+        if (surface.faces.empty()) return;  // a thread
+        const ExportLook look = c < source_.looks.size() ? source_.looks[c] : ExportLook{};
+        const auto positions = [&patch](const FrameRecord& record) {
+            const std::span<const Vec3> x = positions_of(patch, record);
+            return std::vector<Vec3>(x.begin(), x.end());
+        };
+        add_shape(patch.name, {surface, Vertices(surface, patch.count()), positions, 0, {}}, first,
+                  add_material(patch.name, look.front, surface.uvs.empty() ? std::vector<std::uint8_t>{} : look.texture, 0.9));
+    }
+
+    void add_solid(const ExportSolid& solid, const FrameRecord& first) {
+        const ClothSurface surface = surface_of_solid(solid);
+        const Vertices vertices(surface, static_cast<std::uint32_t>(solid.positions.size()));
+        const std::size_t material = add_material(solid.name, solid.color, {}, 0.6);
+        if (solid.shape) {
+            const auto positions = [&solid](const FrameRecord& record) {
+                std::vector<Vec3> x;
+                solid.shape(record.state.t, x);
+                const Eigen::Isometry3d pose = solid.pose(record.state.t);
+                for (Vec3& at : x) at = pose * at;
+                return x;
+            };
+            add_shape(solid.name, {surface, vertices, positions, 0, {}}, first, material);
+            return;
+        }
+        std::vector<Vec3> x;
+        for (const Vec3f& at : solid.positions) x.push_back(at.cast<double>());
+        const std::size_t mesh = add_mesh(solid.name, shape_of(surface, vertices, x), vertices, false, material);
+        add_placed({{"mesh", mesh}, {"name", solid.name}}, solid.pose, solid.moves);
+    }
+
+    void add_camera(const ExportCamera& camera) {
+        const double fov = camera.view(time_of(0)).fov * std::numbers::pi / 180.0;
+        document_["cameras"].push_back({{"type", "perspective"},
+                                        {"name", camera.name},
+                                        {"perspective", {{"yfov", fov}, {"aspectRatio", camera.aspect}, {"znear", 0.01}}}});
+        add_placed({{"camera", document_["cameras"].size() - 1}, {"name", camera.name}},
+                   [&camera](double t) { return placed(camera.view(t)); }, true);
+    }
+
+    // A node that is where `pose` says at the first frame, and moves with it.
+    void add_placed(Json node, const std::function<Eigen::Isometry3d(double)>& pose, bool moves) {
+        const Eigen::Isometry3d at = pose(time_of(0));
+        const Eigen::Quaterniond q(at.linear());
+        node["translation"] = {at.translation().x(), at.translation().y(), at.translation().z()};
+        node["rotation"] = {q.x(), q.y(), q.z(), q.w()};
+        const std::size_t number = add_node(std::move(node));
+        if (moves) moving_.push_back({number, pose});
+    }
+
+    // First pass: the format wants the bounds of every target before the targets.
+    void add_targets() {
+        for (int frame = source_.first + 1; frame <= source_.last; ++frame) {
+            const FrameRecord record = source_.read(frame);
+            for (const GlbShape& shape : shapes_) {
+                const Posture moved = difference(shape.base, shape.at(record));
+                document_["meshes"][shape.mesh]["primitives"][0]["targets"].push_back(
+                    {{"POSITION", binary_.later(moved.positions)}, {"NORMAL", binary_.later(moved.normals)}});
+            }
+        }
+    }
+
+    // Second pass: the targets themselves.
+    bool write_targets(WholeFile& file) const {
+        for (int frame = source_.first; frame <= source_.last; ++frame) {
+            if (frame > source_.first) {
+                const FrameRecord record = source_.read(frame);
+                for (const GlbShape& shape : shapes_) {
+                    const Posture moved = difference(shape.base, shape.at(record));
+                    file.write(std::as_bytes(std::span(moved.positions)));
+                    file.write(std::as_bytes(std::span(moved.normals)));
+                }
+            }
+            if (!source_.done(frame)) return false;
+        }
+        return true;
+    }
+
+    int times() {
+        if (times_ < 0) {
+            std::vector<float> at(frames());
+            for (std::size_t k = 0; k < at.size(); ++k)
+                at[k] = static_cast<float>(static_cast<double>(k) / source_.fps);
+            times_ = binary_.scalars(at, true);
+        }
+        return times_;
+    }
+
+    void animate(std::size_t node, const char* path, int output) {
+        animation_["samplers"].push_back({{"input", times()}, {"output", output}});
+        animation_["channels"].push_back(
+            {{"sampler", animation_["samplers"].size() - 1}, {"target", {{"node", node}, {"path", path}}}});
+    }
+
+    void animate_targets() {
+        const std::size_t targets = frames() - 1;
+        if (targets == 0 || shapes_.empty()) return;
+        std::vector<float> weights(frames() * targets, 0.0f);
+        for (std::size_t k = 1; k < frames(); ++k) weights[k * targets + k - 1] = 1.0f;
+        const int input = times(), output = binary_.scalars(weights);
+        animation_["samplers"].push_back({{"input", input}, {"output", output}});
+        for (std::size_t s = 0; s < shapes_.size(); ++s) {
+            document_["meshes"][shapes_[s].mesh]["weights"] = std::vector<int>(targets, 0);
+            animation_["channels"].push_back(
+                {{"sampler", 0}, {"target", {{"node", node_of_shape_[s]}, {"path", "weights"}}}});
+        }
+    }
+
+    void animate_nodes() {
+        if (frames() < 2) return;
+        for (const Moving& one : moving_) {
+            std::vector<Eigen::Vector3f> places;
+            std::vector<Eigen::Vector4f> turns;
+            for (std::size_t k = 0; k < frames(); ++k) {
+                const Eigen::Isometry3d at = one.pose(time_of(k));
+                Eigen::Vector4f q = Eigen::Quaterniond(at.linear()).coeffs().cast<float>();
+                if (!turns.empty() && q.dot(turns.back()) < 0) q = -q;  // the shorter way
+                places.push_back(at.translation().cast<float>());
+                turns.push_back(q);
+            }
+            animate(one.node, "translation", binary_.vectors(places));
+            animate(one.node, "rotation", binary_.quaternions(turns));
+        }
+    }
+
+    struct Moving {
+        std::size_t node;
+        std::function<Eigen::Isometry3d(double)> pose;
+    };
+
+    const ExportSource& source_;
+    Json document_, animation_;
+    GlbBinary binary_;
+    std::vector<GlbShape> shapes_;
+    std::vector<std::size_t> node_of_shape_;
+    std::vector<Moving> moving_;
+    int times_ = -1;
 };
-
-template <typename T>
-void write(WholeFile& file, const std::vector<T>& values) {
-    file.write(std::as_bytes(std::span(values)));
-}
-
-void write_word(WholeFile& file, std::size_t value) {
-    write(file, std::vector<std::uint32_t>{static_cast<std::uint32_t>(value)});
-}
 
 }  // namespace
 
 Written export_glb(const ExportSource& source, const std::filesystem::path& folder, const std::string& name) {
-    const std::size_t cloths = source.surfaces.size(), frames = static_cast<std::size_t>(source.frames());
-    std::vector<Vertices> vertices;
-    std::vector<Posture> bases;
-    const FrameRecord first = source.read(source.first);
-    GlbLayout layout;
-    Json& json = layout.json;
-    json["scenes"] = Json::array({{{"nodes", Json::array()}}});
-    for (std::size_t c = 0; c < cloths; ++c) {
-        const ClothPatch& patch = source.model.cloths[c];
-        vertices.emplace_back(source.surfaces[c], patch.count());
-        bases.push_back(shape_of(source.surfaces[c], vertices[c], positions_of(patch, first)));
-        if (vertices[c].indices.empty()) continue;  // a thread has no faces
-        Json primitive{{"attributes",
-                        {{"POSITION", layout.vectors(bases[c].positions)},
-                         {"NORMAL", layout.vectors(bases[c].normals)}}},
-                       {"material", 0}};
-        if (!source.surfaces[c].uvs.empty())
-            primitive["attributes"]["TEXCOORD_0"] =
-                layout.accessor(vertices[c].uv.size(), "VEC2", 8, float_type);
-        primitive["indices"] = layout.accessor(vertices[c].indices.size(), "SCALAR", 4, index_type);
-        const auto index = static_cast<int>(json.value("nodes", Json::array()).size());
-        json["nodes"].push_back({{"mesh", index}, {"name", patch.name}});
-        json["meshes"].push_back({{"name", patch.name}, {"primitives", Json::array({primitive})}});
-        json["scenes"][0]["nodes"].push_back(index);
-    }
-    // First pass: the format wants the bounds of every target before the targets.
-    for (int frame = source.first + 1; frame <= source.last; ++frame) {
-        const FrameRecord record = source.read(frame);
-        for (std::size_t c = 0, m = 0; c < cloths; ++c) {
-            if (vertices[c].indices.empty()) continue;
-            const Posture moved = difference(
-                bases[c],
-                shape_of(source.surfaces[c], vertices[c], positions_of(source.model.cloths[c], record)));
-            json["meshes"][m++]["primitives"][0]["targets"].push_back(
-                {{"POSITION", layout.vectors(moved.positions)}, {"NORMAL", layout.vectors(moved.normals)}});
-        }
-    }
-    const std::size_t targets = frames - 1;
-    if (targets > 0 && json.contains("meshes")) {
-        const int times = layout.accessor(
-            frames, "SCALAR", 4, float_type,
-            {{"min", {0.0}}, {"max", {static_cast<float>(static_cast<double>(targets) / source.fps)}}});
-        const int weights = layout.accessor(frames * targets, "SCALAR", 4, float_type);
-        Json animation{{"name", name}, {"samplers", Json::array({{{"input", times}, {"output", weights}}})}};
-        for (std::size_t m = 0; m < json["meshes"].size(); ++m) {
-            json["meshes"][m]["weights"] = std::vector<int>(targets, 0);
-            animation["channels"].push_back({{"sampler", 0}, {"target", {{"node", m}, {"path", "weights"}}}});
-        }
-        json["animations"] = Json::array({animation});
-    }
-    json["buffers"] = Json::array({{{"byteLength", layout.bytes}}});
-    std::string text = json.dump();
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    const std::size_t whole = 12 + 8 + text.size() + 8 + layout.bytes;
-    WholeFile file(folder / (file_name(name) + ".glb"));
-    if (whole > std::numeric_limits<std::uint32_t>::max())
-        throw OutputError(file.target(),
-                          "a glTF file holds no more than 4 GiB: export fewer frames (--frames A-B), "
-                          "or as pc2");
-    for (const std::size_t word :
-         {std::size_t{0x46546C67}, std::size_t{2}, whole, text.size(), std::size_t{0x4E4F534A}})
-        write_word(file, word);
-    file.write(std::string_view(text));
-    write_word(file, layout.bytes);
-    write_word(file, 0x004E4942);
-    for (std::size_t c = 0; c < cloths; ++c) {
-        if (vertices[c].indices.empty()) continue;
-        write(file, bases[c].positions);
-        write(file, bases[c].normals);
-        if (!source.surfaces[c].uvs.empty()) write(file, vertices[c].uv);
-        write(file, vertices[c].indices);
-    }
-    // Second pass: the targets themselves.
-    for (int frame = source.first; frame <= source.last; ++frame) {
-        if (frame > source.first) {
-            const FrameRecord record = source.read(frame);
-            for (std::size_t c = 0; c < cloths; ++c) {
-                if (vertices[c].indices.empty()) continue;
-                const Posture moved = difference(
-                    bases[c],
-                    shape_of(source.surfaces[c], vertices[c], positions_of(source.model.cloths[c], record)));
-                write(file, moved.positions);
-                write(file, moved.normals);
-            }
-        }
-        if (!source.done(frame)) return {};
-    }
-    if (json.contains("animations")) {
-        std::vector<float> times(frames), weights(targets);
-        for (std::size_t k = 0; k < frames; ++k)
-            times[k] = static_cast<float>(static_cast<double>(k) / source.fps);
-        write(file, times);
-        for (std::size_t k = 0; k < frames; ++k) {
-            std::fill(weights.begin(), weights.end(), 0.0f);
-            if (k > 0) weights[k - 1] = 1.0f;
-            write(file, weights);
-        }
-    }
-    file.commit();
-    return {file.target()};
+    return GlbExport(source, name).write(folder / (file_name(name) + ".glb"));
 }
 
 }  // namespace unravel::tool

@@ -145,7 +145,7 @@ std::string page_summary(const Scene& scene, const ClothModel& model, const std:
 
 std::vector<std::string> page_warnings(const Scene& scene, const std::vector<PageFrame>& frames,
                                        Steps reports, const std::string& status) {
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings = scene.notes;
     const int wanted = scene.clip.frames();
     if (status != "complete" && static_cast<int>(frames.size()) < wanted) {
         warnings.push_back(fmt::format("The run was {} after {} of {} frames.",

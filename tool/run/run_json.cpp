@@ -90,6 +90,7 @@ Json run_json(const Scene& scene, const Simulation& simulation, const RunSource&
         json["effects"][effect.name] = {{"on", effect.on}, {"because", effect.because}};
     }
     json["plan"] = plan_json(simulation.ws.plan.step);
+    json["warnings"] = scene.notes;
     json["totals"] = totals(reports, simulation.model.size());
     for (const std::uint64_t hash : source.hashes())
         json["state_hashes"].push_back(fmt::format("{:016x}", hash));

@@ -76,10 +76,10 @@ TEST_CASE("an exported OBJ reads back to the same doubles, faces and texture coo
     REQUIRE(written.size() == 3);
     CHECK(written[0].filename() == "frame_0001.obj");
     for (int frame = 1; frame <= 3; ++frame) {
-        std::vector<MeshFault> faults;
-        const ObjMesh mesh =
-            parse_obj(read_whole_text(written[static_cast<std::size_t>(frame - 1)], largest), faults);
-        REQUIRE(faults.empty());
+        MeshMessages said;
+        const PolygonMesh mesh =
+            parse_obj(read_whole_text(written[static_cast<std::size_t>(frame - 1)], largest), said);
+        REQUIRE(said.faults.empty());
         REQUIRE(mesh.positions.size() == run.simulation.model.size());
         for (std::size_t p = 0; p < mesh.positions.size(); ++p)
             REQUIRE(mesh.positions[p] == run.at(frame, p));
@@ -89,7 +89,7 @@ TEST_CASE("an exported OBJ reads back to the same doubles, faces and texture coo
         // The mesh's own faces come out as they went in.
         const auto& own = run.made.scene.cloths[1].geometry->faces;
         for (std::size_t f = 0; f < own.size(); ++f) {
-            const ObjMesh::Face& face = mesh.faces[28 + f];
+            const PolygonMesh::Face& face = mesh.faces[28 + f];
             REQUIRE(face.corners == own[f].corners);
             for (std::size_t k = 0; k < face.corners; ++k) {
                 REQUIRE(face.vertex[k] == own[f].vertex[k] + 35);
