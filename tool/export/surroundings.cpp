@@ -5,7 +5,7 @@
 #include "sim/mesh/mesh_solid.hpp"
 #include "sim/solids/motion.hpp"
 #include "tool/export/export.hpp"
-#include "tool/view.hpp"
+#include "tool/picture/view.hpp"
 
 namespace unravel::tool {
 

@@ -76,9 +76,9 @@ TEST_CASE("a broken mesh of each kind gets its message", "[mesh]") {
         {square + "v 0 0 1\nf 1 2 3\nf 1 3 4\nf 5 1 3\n", 8,
          "the edge from vertex 1 to 3 belongs to 3 faces (1, 2, 3)"},
         {square + "f 1 2 3 4\n", 0, "the body is open: 1 hole of 4 edges", true},
-        // A Möbius strip of three quads.
-        {square + "v 2 2 1\nv 3 3 1\nf 1 2 4 3\nf 3 4 6 5\nf 5 6 1 2\n", 9,
-         "faces 1 (line 7) and 3 face opposite ways across the edge from vertex 1 to 2"},
+        // A Möbius strip of five triangles.
+        {square + "v 2 2 1\nf 1 2 3\nf 2 3 4\nf 3 4 5\nf 4 5 1\nf 5 1 2\n", 10,
+         "faces 1 (line 6) and 5 face opposite ways across the edge from vertex 1 to 2"},
         {square + "f 1 2 3 4\nstitch 0 1 9 0.7\n", 6, "there is no vertex 9"},
     };
     for (const Broken& broken : all) {

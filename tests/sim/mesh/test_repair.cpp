@@ -8,6 +8,7 @@
 
 #include "sim/mesh/cut_polygon.hpp"
 #include "sim/mesh/half_edges.hpp"
+#include "sim/mesh/mesh_cloth.hpp"
 #include "sim/mesh/mesh_solid.hpp"
 #include "sim/mesh/repair.hpp"
 #include "source_dir.hpp"
@@ -152,7 +153,8 @@ TEST_CASE("bodies are turned outward and their holes closed", "[mesh][scene]") {
     const testing::MeshScene shell = body("cube_open.obj", "mesh_shell = 0.1\n");
     const MeshSolid& solid = *shell.scene.solids[0].geometry;
     CHECK(solid.triangles.size() == 2 * 10 + 2 * 4);
-    CHECK(solid.tree.nearest({0, 1, 0}, 9).distance == Approx(-0.05 / std::sqrt(3.0)).epsilon(0.3));
+    const double inside = solid.tree.nearest({0, 1, 0}, 9).distance;  // corners go out along slanted normals
+    CHECK((inside < -0.03 && inside > -0.05));
     CHECK(solid.tree.nearest({0, 0.5, 0}, 9).distance > 0.3);
 }
 
