@@ -106,7 +106,7 @@ def weights_of(p):
             add(name + "_thigh", weight * thigh * (1 - shin))
             add(name + "_shin", weight * thigh * shin * (1 - foot))
             add(name + "_foot", weight * thigh * shin * foot)
-    best = sorted(out.items(), key=lambda item: (-item[1], NUMBER[item[0]]))[:4]
+    best = sorted((i for i in out.items() if i[1] > 1e-4), key=lambda item: (-item[1], NUMBER[item[0]]))[:4]
     total = sum(w for _, w in best)
     return [(NUMBER[name], w / total) for name, w in best]
 
@@ -224,6 +224,8 @@ class Binary:
         flat = [x for row in rows for x in row] if width > 1 else list(rows)
         data = struct.pack("<%d%s" % (len(flat), code), *flat)
         self.views.append({"buffer": 0, "byteOffset": len(self.bytes), "byteLength": len(data)})
+        if more.get("use"):
+            self.views[-1]["target"] = more["use"]
         self.bytes += data + b"\0" * (-len(data) % 4)
         accessor = {"bufferView": len(self.views) - 1, "componentType": component, "count": len(flat) // width, "type": kind}
         if more.get("bounds"):
@@ -234,6 +236,7 @@ class Binary:
 
 
 FLOAT, SHORT, INT = 5126, 5123, 5125
+VERTICES, INDICES = 34962, 34963
 
 
 def walker(spacing):
@@ -244,11 +247,11 @@ def walker(spacing):
     breath = [(0, 0, 0.008 * smooth(p[1], 1.08, 1.2) * smooth(p[1], 1.33, 1.24) * smooth(p[2], 0.02, 0.09)
                * smooth(abs(p[0]), 0.16, 0.1)) for p in vertices]
     binary = Binary()
-    primitive = {"attributes": {"POSITION": binary.add(vertices, "f", FLOAT, "VEC3", bounds=True),
-                                "JOINTS_0": binary.add([p[0] for p in padded], "H", SHORT, "VEC4"),
-                                "WEIGHTS_0": binary.add([p[1] for p in padded], "f", FLOAT, "VEC4")},
-                 "indices": binary.add(triangles, "I", INT, "SCALAR"), "material": 0,
-                 "targets": [{"POSITION": binary.add(breath, "f", FLOAT, "VEC3", bounds=True)}]}
+    primitive = {"attributes": {"POSITION": binary.add(vertices, "f", FLOAT, "VEC3", bounds=True, use=VERTICES),
+                                "JOINTS_0": binary.add([p[0] for p in padded], "H", SHORT, "VEC4", use=VERTICES),
+                                "WEIGHTS_0": binary.add([p[1] for p in padded], "f", FLOAT, "VEC4", use=VERTICES)},
+                 "indices": binary.add(triangles, "I", INT, "SCALAR", use=INDICES), "material": 0,
+                 "targets": [{"POSITION": binary.add(breath, "f", FLOAT, "VEC3", bounds=True, use=VERTICES)}]}
     binds = []
     nodes = []
     for k, (name, parent, place) in enumerate(JOINTS):

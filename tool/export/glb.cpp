@@ -173,7 +173,7 @@ private:
     std::size_t add_mesh(const std::string& name, const Posture& base, const Vertices& vertices, bool textured,
                          std::size_t material) {
         Json primitive{{"attributes",
-                        {{"POSITION", binary_.vectors(base.positions)}, {"NORMAL", binary_.vectors(base.normals)}}},
+                        {{"POSITION", binary_.vertices(base.positions)}, {"NORMAL", binary_.vertices(base.normals)}}},
                        {"material", material}};
         if (textured) primitive["attributes"]["TEXCOORD_0"] = binary_.pairs(vertices.uv);
         primitive["indices"] = binary_.indices(vertices.indices);
@@ -311,7 +311,7 @@ private:
                 places.push_back(at.translation().cast<float>());
                 turns.push_back(q);
             }
-            animate(one.node, "translation", binary_.vectors(places));
+            animate(one.node, "translation", binary_.places(places));
             animate(one.node, "rotation", binary_.quaternions(turns));
         }
     }

@@ -1,5 +1,6 @@
 #include "tool/export/glb_binary.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 
@@ -27,54 +28,60 @@ void write_words(WholeFile& file, std::initializer_list<std::size_t> values) {
 
 }  // namespace
 
-void GlbBinary::view(std::size_t size) {
+void GlbBinary::view(std::size_t size, Use use) {
     views.push_back({{"buffer", 0}, {"byteOffset", bytes()}, {"byteLength", size}});
+    if (use != animation) views.back()["target"] = static_cast<int>(use);
 }
 
-int GlbBinary::accessor(std::size_t count, const char* type, int component, std::size_t size, Json more) {
-    view(size);
+int GlbBinary::accessor(std::size_t count, const char* type, int component, std::size_t size, Use use,
+                        Json more) {
+    view(size, use);
     Json made{{"bufferView", views.size() - 1}, {"componentType", component}, {"count", count}, {"type", type}};
     if (more.is_object()) made.update(more);
     accessors.push_back(std::move(made));
     return static_cast<int>(accessors.size()) - 1;
 }
 
-int GlbBinary::put(std::span<const std::byte> values, std::size_t count, const char* type, int component,
+int GlbBinary::put(std::span<const std::byte> values, std::size_t count, const char* type, int component, Use use,
                    Json more) {
-    const int number = accessor(count, type, component, values.size(), std::move(more));
+    const int number = accessor(count, type, component, values.size(), use, std::move(more));
     std::vector<std::uint8_t>& to = later_ == 0 ? before_ : after_;
     const auto* from = reinterpret_cast<const std::uint8_t*>(values.data());
     to.insert(to.end(), from, from + values.size());
     return number;
 }
 
+int GlbBinary::vertices(std::span<const Eigen::Vector3f> values) {
+    return put(std::as_bytes(values), values.size(), "VEC3", float_type, attributes, bounds_of(values));
+}
+
+int GlbBinary::pairs(std::span<const Eigen::Vector2f> values) {
+    return put(std::as_bytes(values), values.size(), "VEC2", float_type, attributes);
+}
+
+int GlbBinary::indices(const std::vector<std::uint32_t>& values) {
+    return put(std::as_bytes(std::span(values)), values.size(), "SCALAR", index_type, triangles);
+}
+
 int GlbBinary::scalars(const std::vector<float>& values, bool bounds) {
     Json more;
     if (bounds) {
         const auto [low, high] = std::minmax_element(values.begin(), values.end());
-        more = {{"min", {*low}}, {"max", {*high}}};
+        more = {{"min", Json::array({*low})}, {"max", Json::array({*high})}};
     }
-    return put(std::as_bytes(std::span(values)), values.size(), "SCALAR", float_type, std::move(more));
+    return put(std::as_bytes(std::span(values)), values.size(), "SCALAR", float_type, animation, std::move(more));
 }
 
-int GlbBinary::vectors(std::span<const Eigen::Vector3f> values) {
-    return put(std::as_bytes(values), values.size(), "VEC3", float_type, bounds_of(values));
-}
-
-int GlbBinary::pairs(std::span<const Eigen::Vector2f> values) {
-    return put(std::as_bytes(values), values.size(), "VEC2", float_type);
+int GlbBinary::places(std::span<const Eigen::Vector3f> values) {
+    return put(std::as_bytes(values), values.size(), "VEC3", float_type, animation);
 }
 
 int GlbBinary::quaternions(const std::vector<Eigen::Vector4f>& values) {
-    return put(std::as_bytes(std::span(values)), values.size(), "VEC4", float_type);
-}
-
-int GlbBinary::indices(const std::vector<std::uint32_t>& values) {
-    return put(std::as_bytes(std::span(values)), values.size(), "SCALAR", index_type);
+    return put(std::as_bytes(std::span(values)), values.size(), "VEC4", float_type, animation);
 }
 
 int GlbBinary::file(std::span<const std::uint8_t> content) {
-    view(content.size());
+    view(content.size(), animation);
     std::vector<std::uint8_t>& to = later_ == 0 ? before_ : after_;
     to.insert(to.end(), content.begin(), content.end());
     to.resize((to.size() + 3) / 4 * 4, 0);  // numbers begin at whole words
@@ -82,7 +89,7 @@ int GlbBinary::file(std::span<const std::uint8_t> content) {
 }
 
 int GlbBinary::later(std::span<const Eigen::Vector3f> values) {
-    const int number = accessor(values.size(), "VEC3", float_type, values.size_bytes(), bounds_of(values));
+    const int number = accessor(values.size(), "VEC3", float_type, values.size_bytes(), attributes, bounds_of(values));
     later_ += values.size_bytes();
     return number;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
@@ -18,12 +20,13 @@ public:
 
     Json views = Json::array(), accessors = Json::array();
 
-    /// Accessors of values that are kept here. Each returns its number.
-    int scalars(const std::vector<float>& values, bool bounds = false);
-    int vectors(std::span<const Eigen::Vector3f> values);  ///< with their bounds
+    /// Accessors of values that are kept here, of a mesh or of an animation. Each returns its number.
+    int vertices(std::span<const Eigen::Vector3f> values);  ///< with their bounds
     int pairs(std::span<const Eigen::Vector2f> values);
-    int quaternions(const std::vector<Eigen::Vector4f>& values);
     int indices(const std::vector<std::uint32_t>& values);
+    int scalars(const std::vector<float>& values, bool bounds = false);
+    int places(std::span<const Eigen::Vector3f> values);
+    int quaternions(const std::vector<Eigen::Vector4f>& values);
     /// A view of a whole file, for pictures. Returns its number.
     int file(std::span<const std::uint8_t> bytes);
 
@@ -36,9 +39,12 @@ public:
     const std::vector<std::uint8_t>& after() const { return after_; }
 
 private:
-    int put(std::span<const std::byte> values, std::size_t count, const char* type, int component, Json more = {});
-    int accessor(std::size_t count, const char* type, int component, std::size_t bytes, Json more);
-    void view(std::size_t bytes);
+    // What a view is for, by the numbers of the format.
+    enum Use { animation = 0, attributes = 34962, triangles = 34963 };
+    int put(std::span<const std::byte> values, std::size_t count, const char* type, int component, Use use,
+            Json more = {});
+    int accessor(std::size_t count, const char* type, int component, std::size_t bytes, Use use, Json more);
+    void view(std::size_t bytes, Use use);
 
     std::vector<std::uint8_t> before_, after_;
     std::size_t later_ = 0;

@@ -4,9 +4,11 @@
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/whole_file.hpp"
+#include "render/png.hpp"
 #include "sim/mesh/check_mesh.hpp"
 #include "sim/mesh/mesh_cloth.hpp"
 #include "sim/mesh/obj.hpp"
@@ -211,6 +213,68 @@ TEST_CASE("glTF's targets put the vertices where the frames have them", "[export
     const auto& input = json["accessors"][sampler["input"].get<int>()];
     CHECK(input["max"][0].get<float>() == 0.1f);
     CHECK(json["accessors"][sampler["output"].get<int>()]["count"] == 6);
+}
+
+TEST_CASE("glTF has the solids where the scene has them, textures as they are, and cameras if asked for", "[export]") {
+    const TemporaryFolder folder;
+    const std::string tetra = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    write_whole_file(folder.path() / "t_0.obj", std::string_view(tetra));
+    std::string moved = tetra;
+    moved.replace(moved.find("v 0 0 1"), 7, "v 0 0 3");
+    write_whole_file(folder.path() / "t_1.obj", std::string_view(moved));
+    render::Image image(2, 2);
+    const std::vector<std::uint8_t> png = render::encode_png(image);
+    write_whole_file(folder.path() / "a.png", std::span(png));
+    const Scene scene = parse_scene(
+        "[clip]\nfps = 10\nduration = 0.2\nsize = [320, 160]\n[cloth]\nparticles = [3, 3]\ncenter = [0, 9, 0]\n"
+        "[[solid]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 0.5\ncenter = [1, 2, 3]\n"
+        "motion = [{time = 0}, {time = 0.2, position = [0, 1, 0], rotation = [0, 90, 0]}]\n"
+        "[[solid]]\nname = \"soft\"\nshape = \"mesh\"\nmesh = \"t_0.obj\"\nmesh_frames = \"t_#.obj\"\nmesh_fps = 5\n"
+        "[[camera]]\nname = \"main\"\nposition = [0, 1, 5]\ntarget = [0, 1, 0]\nfov = 45\n"
+        "[[look.cloth]]\ntexture = \"a.png\"\n",
+        "beside.toml", folder.path());
+    Simulation simulation = start_simulation(scene);
+    std::vector<FrameRecord> records{present_record(simulation)};
+    for (int k = 1; k < 3; ++k) records.push_back(next_record(simulation));
+    ExportSource source{simulation.model, {surface_of(simulation.model.cloths[0])}, 0, 2, 10, {}, {}};
+    source.read = [&](int frame) { return records[static_cast<std::size_t>(frame)]; };
+    source.done = [](int) { return true; };
+    add_surroundings(source, scene, true);
+    const Written written = export_glb(source, folder.path(), "beside");
+    const std::vector<std::uint8_t> bytes = read_whole_file(written.at(0), largest);
+    const std::size_t json_size = take<std::uint32_t>(bytes, 12), binary = 20 + json_size + 8;
+    const auto json = nlohmann::json::parse(bytes.begin() + 20, bytes.begin() + 20 + std::ptrdiff_t(json_size));
+    const auto offset = [&](const nlohmann::json& view) {
+        return binary + json["bufferViews"][view.get<std::size_t>()]["byteOffset"].get<std::size_t>();
+    };
+    const auto value = [&](const nlohmann::json& accessor, std::size_t k) {
+        return take<float>(bytes, offset(json["accessors"][accessor.get<std::size_t>()]["bufferView"]) + 4 * k);
+    };
+    CHECK(std::equal(png.begin(), png.end(), bytes.begin() + std::ptrdiff_t(offset(json["images"][0]["bufferView"]))));
+    CHECK(json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] == 0);
+
+    std::map<std::string, std::size_t> node;
+    for (std::size_t n = 0; n < json["nodes"].size(); ++n) node[json["nodes"][n]["name"]] = n;
+    const auto output = [&](const std::string& name, const char* path) {
+        for (const auto& channel : json["animations"][0]["channels"]) {
+            if (channel["target"]["node"] == node.at(name) && channel["target"]["path"] == path)
+                return json["animations"][0]["samplers"][channel["sampler"].get<std::size_t>()]["output"];
+        }
+        return nlohmann::json();
+    };
+    // The ball rises by a metre and turns by a right angle; what deforms is bent by its targets instead.
+    CHECK(value(output("ball", "translation"), 1) == 2.0f);
+    CHECK(value(output("ball", "translation"), 7) == 3.0f);
+    CHECK(value(output("ball", "rotation"), 4 * 2 + 1) == Approx(std::sqrt(0.5)));
+    CHECK(output("soft", "translation").is_null());
+    const auto& primitive = json["meshes"][json["nodes"][node.at("soft")]["mesh"].get<std::size_t>()]["primitives"][0];
+    CHECK(value(primitive["attributes"]["POSITION"], 3 * 3 + 2) == 1.0f);
+    CHECK(value(primitive["targets"][1]["POSITION"], 3 * 3 + 2) == 2.0f);
+    // The camera stands before the scene and looks at it: unturned.
+    const auto& camera = json["nodes"][node.at("main")];
+    CHECK(camera["rotation"][3].get<double>() == Approx(1));
+    CHECK(json["cameras"][0]["perspective"]["aspectRatio"] == 2);
+    CHECK(json["cameras"][0]["perspective"]["yfov"].get<double>() == Approx(std::acos(-1.0) / 4));
 }
 
 TEST_CASE("cloths whose names are alike get files of their own", "[export]") {
