@@ -44,7 +44,7 @@ def compare(what, frame, expected, found):
     if len(found) < len(expected):
         print("bad %s: frame %d has %d vertices, not %d" % (what, frame, len(found), len(expected)))
         sys.exit(1)
-    worst = max(max(abs(a - b) for a, b in zip(p, q)) for p, q in zip(expected, found))
+    worst = max((max(abs(a - b) for a, b in zip(p, q)) for p, q in zip(expected, found)), default=0)
     if not worst < tolerance:
         print("bad %s: frame %d is off by %g m" % (what, frame, worst))
         sys.exit(1)
@@ -119,5 +119,9 @@ for k in range(frames):
         found = [(x, z, -y) for x, y, z in evaluated(things[name])]
         compare("glb", k, states[k][start:start + count], found[:count])
         start += count
+    # The solid goes from (5, 0, 0) to (5, 1, 2).
+    ball = things["ball"].matrix_world.translation
+    expected = [(5, 0, 0)] if k == 0 else [(5, 1, 2)] if k == frames - 1 else []
+    compare("ball of the glb", k, expected, [(ball.x, ball.z, -ball.y)])
 print("ok glb")
 print("ok all")

@@ -54,8 +54,8 @@ struct ExportSource {
 /// What was written, in order; empty where it was stopped.
 using Written = std::vector<std::filesystem::path>;
 
-/// frame_0000.obj …: every cloth an object of each, with texture coordinates, smooth normals and seams.
-/// Positions have the digits that read back to the same doubles.
+/// frame_0000.obj …: every cloth an object of each, with texture coordinates, smooth normals and seams, and
+/// after them every solid, where it is then. Positions have the digits that read back to the same doubles.
 Written export_obj(const ExportSource& source, const std::filesystem::path& folder);
 
 /// frame_0000.ply …, binary: positions as doubles, normals, and the colours of the component view (`colors`
@@ -63,8 +63,8 @@ Written export_obj(const ExportSource& source, const std::filesystem::path& fold
 Written export_ply(const ExportSource& source, const std::filesystem::path& folder,
                    const std::function<std::vector<Rgb>(const FrameRecord&)>& colors);
 
-/// NAME.obj and NAME.pc2 (or NAME.mdd) for every cloth: its first frame as a mesh, and a point cache that
-/// moves it. Positions are rounded to floats once.
+/// NAME.obj and NAME.pc2 (or NAME.mdd) for every cloth, and for every solid: its first frame as a mesh, and a point
+/// cache that moves it. Positions are rounded to floats once.
 Written export_point_cache(const ExportSource& source, const std::filesystem::path& folder, bool mdd);
 
 /// Gives a source what is beside the scene's cloths: their looks, the solids, and the cameras if asked for.
@@ -76,6 +76,9 @@ void add_surroundings(ExportSource& source, const Scene& scene, bool cameras);
 /// move. Textures are inside. `name` of the file.
 Written export_glb(const ExportSource& source, const std::filesystem::path& folder, const std::string& name);
 
+/// Where a solid's vertices are in the world at t [s]. (vertices) [m]
+std::vector<Vec3> solid_positions(const ExportSolid& solid, double t);
+
 /// A cloth's part of a state. [m]
 std::span<const Vec3> positions_of(const ClothPatch& patch, const FrameRecord& record);
 
@@ -85,8 +88,12 @@ std::vector<Vec3> surface_normals(const ClothSurface& surface, std::span<const V
 /// A name as that of a file: letters, digits, '-', '_' and '.'; others become '_'.
 std::string file_name(const std::string& name);
 
-/// The cloths' names as those of files, no two the same: what is taken gets "_2", "_3", … (cloths)
-std::vector<std::string> file_names(const ClothModel& model);
+/// The cloths' names, then the solids', as those of files, no two the same: what is taken gets "_2", "_3", …
+std::vector<std::string> file_names(const ExportSource& source);
+
+/// A solid as the lines of an OBJ file, its object called `name`, after `vertices` that stand there already.
+std::string obj_text(const std::string& name, const ExportSolid& solid, std::span<const Vec3> x,
+                     std::size_t vertices);
 
 /// One cloth as the lines of an OBJ file, its object called `name`, after `vertices` and `uvs` that stand in
 /// the file already.

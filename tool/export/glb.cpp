@@ -207,11 +207,7 @@ private:
         const std::size_t material = add_material(solid.name, solid.color, {}, 0.6);
         if (solid.shape) {
             const auto positions = [&solid](const FrameRecord& record) {
-                std::vector<Vec3> x;
-                solid.shape(record.state.t, x);
-                const Eigen::Isometry3d pose = solid.pose(record.state.t);
-                for (Vec3& at : x) at = pose * at;
-                return x;
+                return solid_positions(solid, record.state.t);
             };
             add_shape(solid.name, {surface, vertices, positions, 0, {}}, first, material);
             return;

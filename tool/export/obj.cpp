@@ -41,16 +41,29 @@ std::string file_name(const std::string& name) {
     return out.starts_with('.') ? "_" + out : out;
 }
 
-std::vector<std::string> file_names(const ClothModel& model) {
+std::vector<std::string> file_names(const ExportSource& source) {
     std::vector<std::string> names;
-    for (const ClothPatch& patch : model.cloths) {
-        const std::string plain = file_name(patch.name);
+    const auto add = [&](const std::string& wanted) {
+        const std::string plain = file_name(wanted);
         std::string name = plain;
         for (int k = 2; std::find(names.begin(), names.end(), name) != names.end(); ++k)
             name = fmt::format("{}_{}", plain, k);
         names.push_back(name);
-    }
+    };
+    for (const ClothPatch& patch : source.model.cloths) add(patch.name);
+    for (const ExportSolid& solid : source.solids) add(solid.name);
     return names;
+}
+
+std::string obj_text(const std::string& name, const ExportSolid& solid, std::span<const Vec3> x,
+                     std::size_t vertices) {
+    fmt::memory_buffer out;
+    const auto to = std::back_inserter(out);
+    fmt::format_to(to, "o {}\n", name);
+    for (const Vec3& p : x) fmt::format_to(to, "v {} {} {}\n", p.x(), p.y(), p.z());
+    for (const auto& [a, b, c] : solid.triangles)
+        fmt::format_to(to, "f {} {} {}\n", vertices + a + 1, vertices + b + 1, vertices + c + 1);
+    return fmt::to_string(out);
 }
 
 std::string obj_text(const std::string& name, const ClothPatch& patch, const ClothSurface& surface,
@@ -83,7 +96,7 @@ std::string obj_text(const std::string& name, const ClothPatch& patch, const Clo
 
 Written export_obj(const ExportSource& source, const std::filesystem::path& folder) {
     Written written;
-    const std::vector<std::string> names = file_names(source.model);
+    const std::vector<std::string> names = file_names(source);
     for (int frame = source.first; frame <= source.last; ++frame) {
         const FrameRecord record = source.read(frame);
         WholeFile file(folder / fmt::format("frame_{:04}.obj", frame));
@@ -94,6 +107,12 @@ Written export_obj(const ExportSource& source, const std::filesystem::path& fold
             file.write(
                 obj_text(names[c], patch, source.surfaces[c], positions_of(patch, record), patch.first, uvs));
             uvs += source.surfaces[c].uvs.size();
+        }
+        std::size_t vertices = source.model.size();
+        for (std::size_t k = 0; k < source.solids.size(); ++k) {
+            const std::vector<Vec3> x = solid_positions(source.solids[k], record.state.t);
+            file.write(obj_text(names[source.surfaces.size() + k], source.solids[k], x, vertices));
+            vertices += x.size();
         }
         file.commit();
         written.push_back(file.target());

@@ -33,33 +33,37 @@ std::vector<std::uint8_t> mdd_header(const ExportSource& source, std::uint32_t p
 }  // namespace
 
 Written export_point_cache(const ExportSource& source, const std::filesystem::path& folder, bool mdd) {
-    const std::vector<std::string> names = file_names(source.model);
+    const std::vector<std::string> names = file_names(source);
+    const std::size_t cloths = source.surfaces.size();
     std::vector<std::unique_ptr<WholeFile>> meshes, caches;
-    for (std::size_t c = 0; c < source.surfaces.size(); ++c) {
-        const ClothPatch& patch = source.model.cloths[c];
-        const std::string& name = names[c];
-        meshes.push_back(std::make_unique<WholeFile>(folder / (name + ".obj")));
-        caches.push_back(std::make_unique<WholeFile>(folder / (name + (mdd ? ".mdd" : ".pc2"))));
-        const Pc2Header header{static_cast<std::int32_t>(patch.count()), static_cast<float>(source.first),
-                               1.0f, source.frames()};
-        caches.back()->write(mdd ? mdd_header(source, patch.count()) : pc2_header(header));
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const auto points = static_cast<std::uint32_t>(k < cloths ? source.model.cloths[k].count()
+                                                                  : source.solids[k - cloths].positions.size());
+        meshes.push_back(std::make_unique<WholeFile>(folder / (names[k] + ".obj")));
+        caches.push_back(std::make_unique<WholeFile>(folder / (names[k] + (mdd ? ".mdd" : ".pc2"))));
+        const Pc2Header header{static_cast<std::int32_t>(points), static_cast<float>(source.first), 1.0f,
+                               source.frames()};
+        caches.back()->write(mdd ? mdd_header(source, points) : pc2_header(header));
     }
     std::vector<std::uint8_t> bytes;
     for (int frame = source.first; frame <= source.last; ++frame) {
         const FrameRecord record = source.read(frame);
-        for (std::size_t c = 0; c < caches.size(); ++c) {
-            const ClothPatch& patch = source.model.cloths[c];
-            const std::span<const Vec3> x = positions_of(patch, record);
+        for (std::size_t k = 0; k < caches.size(); ++k) {
+            std::vector<Vec3> of_solid;
+            if (k >= cloths) of_solid = solid_positions(source.solids[k - cloths], record.state.t);
+            const std::span<const Vec3> x =
+                k < cloths ? positions_of(source.model.cloths[k], record) : std::span<const Vec3>(of_solid);
             if (frame == source.first) {
-                meshes[c]->write(std::string_view("# unravel: metres, right-handed, y up\n"));
-                meshes[c]->write(obj_text(names[c], patch, source.surfaces[c], x, 0, 0));
+                meshes[k]->write(std::string_view("# unravel: metres, right-handed, y up\n"));
+                meshes[k]->write(k < cloths ? obj_text(names[k], source.model.cloths[k], source.surfaces[k], x, 0, 0)
+                                            : obj_text(names[k], source.solids[k - cloths], x, 0));
             }
             bytes.clear();
             for (const Vec3& p : x) {
                 for (const double value : {p.x(), p.y(), p.z()})
                     append(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(value)), mdd);
             }
-            caches[c]->write(bytes);
+            caches[k]->write(bytes);
         }
         if (!source.done(frame)) return {};
     }

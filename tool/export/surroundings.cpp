@@ -50,6 +50,17 @@ void give_shape(const Solid& solid, ExportSolid& out) {
 
 }  // namespace
 
+std::vector<Vec3> solid_positions(const ExportSolid& solid, double t) {
+    std::vector<Vec3> x;
+    if (solid.shape)
+        solid.shape(t, x);
+    else
+        for (const Vec3f& at : solid.positions) x.push_back(at.cast<double>());
+    const Eigen::Isometry3d pose = solid.pose(t);
+    for (Vec3& at : x) at = pose * at;
+    return x;
+}
+
 void add_surroundings(ExportSource& source, const Scene& scene, bool cameras) {
     for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
         ExportLook out;

@@ -118,6 +118,10 @@ TEST_CASE("the complete scene's values arrive where they belong", "[scene]") {
     REQUIRE(scene.solids.size() == 4);
     CHECK(scene.solids[3].frames.files == "tetra_##.obj");
     CHECK(scene.solids[3].frames.start == -0.5);
+    CHECK(scene.solids[3].frames.loop);
+    CHECK(scene.solids[3].mesh.merge == false);
+    CHECK(scene.solids[3].mesh.holes == MeshHoles::cap);
+    CHECK(scene.cloths[2].mesh.merge == true);
     CHECK(scene.solids[3].geometry->samples.size() == 2);
     CHECK(scene.cloths[2].geometry->groups.at("left").size() == 2);
     CHECK(scene.cloths[2].sewing.stiffness == 120);

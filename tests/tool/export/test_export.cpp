@@ -222,7 +222,7 @@ TEST_CASE("glTF has the solids where the scene has them, textures as they are, a
     std::string moved = tetra;
     moved.replace(moved.find("v 0 0 1"), 7, "v 0 0 3");
     write_whole_file(folder.path() / "t_1.obj", std::string_view(moved));
-    render::Image image(2, 2);
+    const render::Image image{2, 2, std::vector<std::uint8_t>(16, 200)};
     const std::vector<std::uint8_t> png = render::encode_png(image);
     write_whole_file(folder.path() / "a.png", std::span(png));
     const Scene scene = parse_scene(
