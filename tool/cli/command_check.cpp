@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -36,7 +37,19 @@ constexpr double mesh_contact_step = 3.5e-6;              // with meshes
 constexpr double self_collision_step = 0.8e-6;
 // Seconds per frame of 1280 × 720, both views with PNG and video:
 constexpr double frame_pictures = 0.11;
-constexpr double bytes_per_particle = 1900;
+// Memory at its peak, measured within a factor of 1.5: of the simulation, and what pictures of 1280 × 720 add to it.
+constexpr double own_bytes = 45e6, grid_bytes = 1150, mesh_bytes = 5000;
+constexpr double picture_bytes = 230e6, grid_picture_bytes = 2050, mesh_picture_bytes = 2900;
+
+// Of the simulation, and with pictures.
+std::array<double, 2> estimated_bytes(const ClothModel& model) {
+    double simulation = own_bytes, pictures = picture_bytes;
+    for (const ClothPatch& cloth : model.cloths) {
+        simulation += cloth.count() * (cloth.grid() ? grid_bytes : mesh_bytes);
+        pictures += cloth.count() * (cloth.grid() ? grid_picture_bytes : mesh_picture_bytes);
+    }
+    return {simulation, simulation + pictures};
+}
 
 double step_seconds(const Scene& scene, const ClothModel& model) {
     double seconds = 0;
@@ -94,7 +107,7 @@ int check(const CheckOptions& options) {
     Simulation simulation = start_simulation(scene);
     require_explicit_stability(simulation.model, simulation.options, scene.solver.step);
     const std::vector<Effect> effects = list_effects(scene);
-    const double n = static_cast<double>(simulation.model.size());
+    const std::array<double, 2> memory = estimated_bytes(simulation.model);
     const long steps = static_cast<long>(simulation.steps_per_frame) * (scene.clip.frames() - 1);
     const double seconds = static_cast<double>(steps) * step_seconds(scene, simulation.model);
     const double pictures = picture_seconds(scene);
@@ -108,7 +121,8 @@ int check(const CheckOptions& options) {
                                     {"particles", simulation.model.size()},
                                     {"frames", scene.clip.frames()},
                                     {"steps", steps},
-                                    {"estimated_bytes", n * bytes_per_particle},
+                                    {"estimated_bytes", memory[0]},
+                                    {"estimated_bytes_with_pictures", memory[1]},
                                     {"estimated_seconds", seconds},
                                     {"estimated_picture_seconds", pictures},
                                     {"bend_springs_limited", limit.limited}};
@@ -130,8 +144,8 @@ int check(const CheckOptions& options) {
     });
     fmt::print("  {} frames at {} per second, {} steps of {} s\n", scene.clip.frames(), scene.clip.fps, steps,
                scene.solver.step);
-    fmt::print("  about {:.0f} MB of memory, on one core {} of simulation and {} of pictures\n",
-               n * bytes_per_particle / 1e6, duration_text(seconds), duration_text(pictures));
+    fmt::print("  about {:.0f} MB of memory, {:.0f} with pictures; on one core {} of simulation and {} of pictures\n",
+               memory[0] / 1e6, memory[1] / 1e6, duration_text(seconds), duration_text(pictures));
     for (const auto& [name, words] : plan_words(plan)) fmt::print("  {:<19} {}\n", name, words);
     for (const Effect& e : effects)
         fmt::print("  {:<15} {} because {}\n", e.name, e.on ? "on, " : "off,", e.because);
