@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace unravel::render {
 
@@ -47,6 +48,17 @@ void visit_bounds(const DrawScene& scene, const DrawFrame& frame,
             visit(frame.solid_poses[s] * Vec3f(half.cwiseProduct(sign)));
         }
     }
+}
+
+BoundingBox bounds_of(const DrawScene& scene, const DrawFrame& frame) {
+    constexpr float far = std::numeric_limits<float>::max();
+    BoundingBox box{Vec3f::Constant(far), Vec3f::Constant(-far)};
+    const auto include = [&](const Vec3f& p) {
+        box.low = box.low.cwiseMin(p);
+        box.high = box.high.cwiseMax(p);
+    };
+    visit_bounds(scene, frame, std::ref(include));
+    return box.low.x() <= box.high.x() ? box : BoundingBox{scene.bounds_low, scene.bounds_high};
 }
 
 PixelRect covered_rect(const DrawScene& scene, const DrawFrame& frame, const Eigen::Matrix4f& view_projection,

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <tuple>
 
+#include "render/coarse_mesh.hpp"
 #include "render/color.hpp"
 #include "render/normals.hpp"
 #include "render/shadow.hpp"
@@ -16,35 +15,26 @@ namespace unravel::render {
 
 namespace {
 
-// Triangles of a cloth from which on its light is worked out at its vertices.
-constexpr std::size_t fine_mesh = 12'000;
+// Triangles of a cloth from which on a software renderer works its light out at its vertices: they are a few
+// pixels large then, and cost it as much each as blocks of pixels do.
+constexpr std::size_t fine_mesh = 60'000;
 
-void upload_texture(GLuint texture, const Image& image) {
+// Particles of a cloth that cast its shadow: a software renderer takes more for every triangle than a pixel of shadow
+// is worth.
+constexpr std::size_t key_casters = 30'000, sky_casters = 1'600;
+
+/// `repeats`: beyond [0, 1]² the picture goes on; else its rim does not take in the opposite one.
+void upload_texture(GLuint texture, const Image& image, bool repeats) {
     glBindTexture(GL_TEXTURE_2D, texture);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, image.width, image.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
                  image.pixels.data());
     glGenerateMipmap(GL_TEXTURE_2D);
+    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+        glTexParameteri(GL_TEXTURE_2D, axis, repeats ? GL_REPEAT : GL_CLAMP_TO_EDGE);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
         glTexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAX_ANISOTROPY_EXT, 8);
-}
-
-/// Which of a mesh's pieces each vertex belongs to: of a garment's panels many lie on the same place of the
-/// flat cloth.
-std::vector<std::uint32_t> pieces_of(const ClothMesh& mesh) {
-    std::vector<std::uint32_t> parent(mesh.uv.size());
-    for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = i;
-    const auto root = [&](std::uint32_t i) {
-        while (parent[i] != i) i = parent[i] = parent[parent[i]];
-        return i;
-    };
-    for (const auto& [a, b, c] : mesh.triangles) {
-        parent[root(b)] = root(a);
-        parent[root(c)] = root(a);
-    }
-    for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = root(i);
-    return parent;
 }
 
 /// Between neighbouring vertices, where cells are square [m].
@@ -70,28 +60,6 @@ std::vector<std::array<std::uint32_t, 3>> in_blocks(const ClothMesh& mesh) {
     };
     std::vector<std::array<std::uint32_t, 3>> triangles = mesh.triangles;
     std::ranges::stable_sort(triangles, {}, block);
-    return triangles;
-}
-
-/// Triangles between a few of the mesh's vertices: each cell of a grid over the flat cloth, `cells` along its
-/// longer side, is stood for by its first vertex, piece by piece.
-std::vector<std::uint32_t> coarsen(const ClothMesh& mesh, float cells) {
-    Vec2f extent(1e-6f, 1e-6f);
-    for (const Vec2f& uv : mesh.uv) extent = extent.cwiseMax(uv);
-    const float cell = extent.maxCoeff() / cells;
-    const std::vector<std::uint32_t> piece = pieces_of(mesh);
-    std::map<std::tuple<std::uint32_t, int, int>, std::uint32_t> first;
-    std::vector<std::uint32_t> standing(mesh.uv.size());
-    for (std::uint32_t i = 0; i < mesh.uv.size(); ++i) {
-        const std::tuple key{piece[i], static_cast<int>(mesh.uv[i].x() / cell),
-                             static_cast<int>(mesh.uv[i].y() / cell)};
-        standing[i] = first.emplace(key, i).first->second;
-    }
-    std::vector<std::uint32_t> triangles;
-    for (const auto& [a, b, c] : mesh.triangles) {
-        const std::uint32_t i = standing[a], j = standing[b], k = standing[c];
-        if (i != j && j != k && k != i) triangles.insert(triangles.end(), {i, j, k});
-    }
     return triangles;
 }
 
@@ -129,15 +97,16 @@ float thread_of(const ClothAppearance& look) {
 }
 
 /// `threads`: some may be large enough to be seen.
-GlProgram fabric_program(const ClothMesh& mesh, bool software, bool encoded, bool threads) {
+GlProgram fabric_program(const ClothMesh& mesh, const ClothRenderer::Options& options, bool threads) {
     const ClothAppearance& look = mesh.appearance;
     const std::string defines = fmt::format(
-        "#define WEAVE {}\n#define PICTURE {}\n#define LIGHT_AT_VERTICES {}\n#define THREADS {}\n#define "
-        "ENCODED {}\n",
+        "#define WEAVE {}\n#define PICTURE {}\n#define LIGHT_AT_VERTICES {}\n#define THREADS {}\n"
+        "#define ENCODED {}\n#define SUPERSAMPLE {}\n",
         static_cast<int>(look.weave), mesh.texture.pixels.empty() ? 0 : 1,
-        software && mesh.triangles.size() > fine_mesh ? 1 : 0, threads ? 1 : 0, encoded ? 1 : 0);
+        options.software && mesh.triangles.size() > fine_mesh ? 1 : 0, threads ? 1 : 0, options.encoded ? 1 : 0,
+        options.supersample);
     GlProgram program({"frame.glsl", "light.glsl", "sky.glsl", "fabric.glsl", "cloth.vert"},
-                      {"frame.glsl", "light.glsl", "pattern.glsl", "fabric.glsl", "weave.glsl", "color.glsl",
+                      {"frame.glsl", "quads.glsl", "light.glsl", "fabric.glsl", "weave.glsl", "color.glsl",
                        "written.glsl", "cloth.frag"},
                       defines);
     ShadowMaps::connect(program);
@@ -158,16 +127,17 @@ GlProgram fabric_program(const ClothMesh& mesh, bool software, bool encoded, boo
 
 }  // namespace
 
-ClothRenderer::Cloth::Cloth(const ClothMesh& of, bool software, bool encoded)
+ClothRenderer::Cloth::Cloth(const ClothMesh& of, const Options& options)
     : mesh(&of),
-      near(fabric_program(of, software, encoded, true)),
-      far(fabric_program(of, software, encoded, false)),
+      near(fabric_program(of, options, true)),
+      far(fabric_program(of, options, false)),
       thread(thread_of(of.appearance)) {}
 
-ClothRenderer::ClothRenderer(const DrawScene& scene, bool software, bool encoded) {
+ClothRenderer::ClothRenderer(const DrawScene& scene, const Options& options)
+    : supersample_(static_cast<float>(options.supersample)) {
     std::size_t most = 0, particles = 0;
     for (const ClothMesh& mesh : scene.cloths) {
-        Cloth& cloth = cloths_.emplace_back(mesh, software, encoded);
+        Cloth& cloth = cloths_.emplace_back(mesh, options);
         const std::size_t count = mesh.particle.size();
         most = std::max(most, count);
         for (const std::uint32_t p : mesh.particle) particles = std::max<std::size_t>(particles, p + 1);
@@ -183,15 +153,17 @@ ClothRenderer::ClothRenderer(const DrawScene& scene, bool software, bool encoded
         glVertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, 4, nullptr);
         fill_buffer(GL_ELEMENT_ARRAY_BUFFER, cloth.indices, in_blocks(mesh));
         // A GPU draws all triangles faster than it is told to draw fewer.
-        make_outline(cloth, software ? 64 : 1e6f, cloth.casters);
-        make_outline(cloth, 28, cloth.coarse);
+        make_outline(cloth, options.software ? key_casters : count, cloth.casters);
+        make_outline(cloth, sky_casters, cloth.coarse);
         glBindVertexArray(0);
 
         if (!mesh.texture.pixels.empty()) {
-            upload_texture(cloth.texture, mesh.texture);
-            Vec2f extent(1e-6f, 1e-6f);
-            for (const Vec2f& uv : mesh.uv) extent = extent.cwiseMax(uv);
-            const Vec2f scale = extent.cwiseInverse();
+            const Vec2f& scale = mesh.picture_scale;
+            const auto beyond = [&](const Vec2f& uv) {
+                const Vec2f at = uv.cwiseProduct(scale);
+                return at.minCoeff() < -1e-4f || at.maxCoeff() > 1 + 1e-4f;
+            };
+            upload_texture(cloth.texture, mesh.texture, std::ranges::any_of(mesh.uv, beyond));
             for (const GlProgram* program : {&cloth.near, &cloth.far}) {
                 program->use();
                 glUniform2fv(program->uniform("picture_scale"), 1, scale.data());
@@ -258,9 +230,9 @@ void ClothRenderer::draw_casters() const {
     for (const Cloth& cloth : cloths_) draw_outline(cloth.casters);
 }
 
-void ClothRenderer::make_outline(const Cloth& cloth, float cells, Outline& outline) {
-    const std::vector<std::uint32_t> triangles = coarsen(*cloth.mesh, cells);
-    outline.count = static_cast<GLsizei>(triangles.size());
+void ClothRenderer::make_outline(const Cloth& cloth, std::size_t particles, Outline& outline) {
+    const std::vector<std::array<std::uint32_t, 3>> triangles = coarse_triangles(*cloth.mesh, particles);
+    outline.count = static_cast<GLsizei>(3 * triangles.size());
     glBindVertexArray(outline.array);
     glBindBuffer(GL_ARRAY_BUFFER, cloth.vertices);
     float_attribute(0, 3, sizeof(Vertex), 0);
@@ -274,7 +246,7 @@ void ClothRenderer::draw_outline(const Outline& outline) {
 
 void ClothRenderer::draw_fabric(float pixels) const {
     for (const Cloth& cloth : cloths_) {
-        (cloth.thread * pixels > least_thread * cloth.distance ? cloth.near : cloth.far).use();
+        (cloth.thread * pixels > least_thread * supersample_ * cloth.distance ? cloth.near : cloth.far).use();
         glActiveTexture(GL_TEXTURE0);
         glBindTexture(GL_TEXTURE_2D, cloth.texture);
         draw_triangles(cloth);

@@ -11,9 +11,13 @@ namespace unravel::render {
 /// The cloths as surfaces: into shadow maps, as fabric, and as the ground that wires are drawn on.
 class ClothRenderer {
 public:
-    /// `software`: the renderer pays for each pixel; fine meshes then get their light at vertices.
-    /// `encoded`: shaders write sRGB.
-    ClothRenderer(const DrawScene& scene, bool software, bool encoded);
+    struct Options {
+        bool software;  ///< the renderer pays for each triangle and pixel: very fine meshes then get their
+                        ///< light at vertices and cast shadows by fewer triangles
+        bool encoded;   ///< shaders write sRGB
+        int supersample;  ///< drawn pixels along a side of a finished one
+    };
+    ClothRenderer(const DrawScene& scene, const Options& options);
 
     /// New positions and smooth normals.
     void update_shape(const DrawFrame& frame);
@@ -25,7 +29,7 @@ public:
     void draw_shapes() const;
     /// The same in at most a few thousand triangles, for the small maps of sky light. Position only.
     void draw_coarse() const;
-    /// The same in enough triangles for the key light's map.
+    /// The same in enough triangles for the key light's map: all but those of very fine meshes.
     void draw_casters() const;
     /// `pixels`: that a metre takes at a depth of 1 m.
     void draw_fabric(float pixels) const;
@@ -50,12 +54,13 @@ private:
         Outline casters, coarse;
         GlTexture texture;
 
-        Cloth(const ClothMesh& of, bool software, bool encoded);
+        Cloth(const ClothMesh& of, const Options& options);
     };
     void draw_triangles(const Cloth& cloth) const;
-    static void make_outline(const Cloth& cloth, float cells, Outline& outline);
+    static void make_outline(const Cloth& cloth, std::size_t particles, Outline& outline);
     static void draw_outline(const Outline& outline);
 
+    float supersample_;
     std::vector<Cloth> cloths_;
     std::vector<Vec3f> normals_;                               ///< (particles)
     std::vector<Vertex> scratch_;                              ///< of one cloth at a time

@@ -40,7 +40,9 @@ struct ClothMesh {
     std::vector<std::array<std::uint32_t, 3>>
         triangles;  ///< vertex indices, counter-clockwise from the front
     ClothAppearance appearance;
-    Image texture;  ///< appearance.texture decoded; spans the cloth once, on its front; empty: the weave
+    Image texture;             ///< appearance.texture decoded, seen on the front; empty: the weave
+    Vec2f picture_scale{1, 1};  ///< 1/m: uv times this places the picture as vt does: it spans [0, 1]², its
+                                ///< lowest row at v = 0, and repeats beyond
 };
 
 enum class SolidShape { plane, sphere, box, cylinder, capsule, mesh };
@@ -76,7 +78,7 @@ struct DrawScene {
     Rgb components_background{27, 30, 36};  ///< of the component view: dark, so that white and every hue read
     Vec3f key_direction{-0.35f, 0.8f, 0.5f};  ///< towards the key light; need not be unit
     Vec3f bounds_low{-1, 0, -1},
-        bounds_high{1, 1, 1};  ///< m, of everything over the clip; aims light and shadow
+        bounds_high{1, 1, 1};  ///< m, of what is known of the clip beforehand: the ground's extent
 };
 
 /// What changes from frame to frame.

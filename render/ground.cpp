@@ -13,7 +13,7 @@ namespace unravel::render {
 namespace {
 
 // The component view shows no more ground than tells where it lies.
-constexpr float quiet_tone = 2.0f, quiet_begin = 0.1f, quiet_end = 0.28f;
+constexpr float quiet_tone = 2.0f, quiet_begin = 0.105f, quiet_end = 0.295f;  // of the ground's reach
 
 // A light lower than this casts shadows beyond the map; they fade at its rim.
 constexpr float lowest_light = 0.3f;
@@ -38,55 +38,44 @@ Eigen::Array2f shadow_of(const Vec3f& p, const Vec3f& key, float level) {
 
 }  // namespace
 
-Ground::Ground(const DrawScene& scene, float reach, int map_size, bool encoded)
+Ground::Ground(const DrawScene& scene, int map_size, bool encoded)
     : scene_(&scene),
       key_(scene.key_direction.normalized()),
-      centre_(0.5f * (scene.bounds_low + scene.bounds_high)),
-      reach_(reach),
-      open_({"map.vert"}, {"frame.glsl", "light.glsl", "ground_open.frag"}),
+      size_(map_size),
+      open_({"map.vert"}, {"frame.glsl", "light.glsl", "pattern.glsl", "ground_open.frag"}),
       visible_({"map.vert"}, {"frame.glsl", "light.glsl", "pattern.glsl", "ground_visible.frag"}),
       soft_({"map.vert"}, {"ground_soft.frag"}),
-      shown_({"frame.glsl", "light.glsl", "ground.vert"}, {"color.glsl", "written.glsl", "ground.frag"},
+      shown_({"frame.glsl", "light.glsl", "ground.vert"},
+             {"frame.glsl", "light.glsl", "color.glsl", "written.glsl", "ground.frag"},
              fmt::format("#define GRID {}\n#define ENCODED {}\n", cells, encoded ? 1 : 0)),
-      quiet_({"frame.glsl", "ground_quiet.vert"}, {"frame.glsl", "ground_quiet.frag"}) {
-    // The map holds the scene's surroundings and the shadow of the sphere around it.
+      quiet_({"frame.glsl", "ground_quiet.vert"}, {"frame.glsl", "color.glsl", "written.glsl", "ground_quiet.frag"},
+             "#define ENCODED 0\n") {
+    // Fine enough to hold the shadow of the sphere around the scene.
     const float radius = 0.5f * (scene.bounds_high - scene.bounds_low).norm();
-    const Eigen::Array2f middle(centre_.x(), centre_.z());
-    const Eigen::Array2f shadow = shadow_of(centre_, key_, scene.ground_height);
-    const float shadow_radius = radius / std::max(key_.y(), lowest_light);
-    low_ = (middle - 1.2f * radius).min(shadow - shadow_radius);
-    extent_ = (middle + 1.2f * radius).max(shadow + shadow_radius) - low_;
-    const float texel = extent_.maxCoeff() / static_cast<float>(map_size);
-    width_ = std::max(1, static_cast<int>(std::lround(extent_.x() / texel)));
-    height_ = std::max(1, static_cast<int>(std::lround(extent_.y() / texel)));
+    least_texel_ = 2.2f * radius / std::max(key_.y(), lowest_light) / static_cast<float>(map_size);
 
-    make_map(open_map_, open_target_, GL_R8, open_size, open_size);
-    make_map(visible_map_, visible_target_, GL_R8, width_, height_);
-    make_map(soft_map_, soft_target_, GL_R8, width_, height_);
+    make_map(rough_open_map_, rough_open_target_, GL_R16, open_size, open_size);
+    make_map(open_map_, open_target_, GL_R16, open_size, open_size);
+    make_map(visible_map_, visible_target_, GL_R8, size_, size_);
+    make_map(soft_map_, soft_target_, GL_R8, size_, size_);
 
     for (const GlProgram* program : {&open_, &visible_, &soft_, &shown_, &quiet_}) {
         program->use();
         const Vec3f albedo = program == &quiet_ ? Vec3f(quiet_tone * linear(scene.components_background))
                                                 : linear(scene.ground);
         glUniform1f(program->uniform("level"), scene.ground_height);
-        glUniform4f(program->uniform("region"), low_.x(), low_.y(), extent_.x(), extent_.y());
         glUniform3fv(program->uniform("albedo"), 1, albedo.data());
         ShadowMaps::connect(*program);
         program->sampler("open_map", first_unit);
         program->sampler("visible_map", first_unit);
         program->sampler("soft_map", first_unit + 1);
     }
-    shown_.use();
-    glUniform1f(shown_.uniform("reach"), reach_ * fade_end);
-    glUniform2f(shown_.uniform("fade"), reach_ * fade_begin, reach_ * fade_end);
     quiet_.use();
-    glUniform1f(quiet_.uniform("extent"), quiet_end);
-    glUniform2f(quiet_.uniform("fade"), reach_ * quiet_begin, reach_ * quiet_end);
+    glUniform2f(quiet_.uniform("fade"), quiet_begin, quiet_end);
 
-    // One large square: what lies behind the camera is clipped away.
-    const float x = centre_.x(), z = centre_.z(), y = scene.ground_height;
-    const std::array<Vec3f, 4> corners{Vec3f(x - reach_, y, z - reach_), Vec3f(x - reach_, y, z + reach_),
-                                       Vec3f(x + reach_, y, z - reach_), Vec3f(x + reach_, y, z + reach_)};
+    // A square: what lies behind the camera is clipped away.
+    const float y = scene.ground_height;
+    const std::array<Vec3f, 4> corners{Vec3f(-1, y, -1), Vec3f(-1, y, 1), Vec3f(1, y, -1), Vec3f(1, y, 1)};
     glBindVertexArray(square_);
     fill_buffer(GL_ARRAY_BUFFER, corners_, corners);
     float_attribute(0, 3, sizeof(Vec3f), 0);
@@ -104,7 +93,8 @@ Ground::Ground(const DrawScene& scene, float reach, int map_size, bool encoded)
     glBindVertexArray(0);
 }
 
-PixelRect Ground::shadow_rect(const DrawFrame& frame) const {
+/// Where this frame's shapes may shade the ground, penumbras and all.
+Ground::Region Ground::shadow_region(const DrawFrame& frame) const {
     const float level = scene_->ground_height;
     Eigen::Array2f low = Eigen::Array2f::Constant(1e9f), high = -low;
     float top = 0;
@@ -118,27 +108,62 @@ PixelRect Ground::shadow_rect(const DrawFrame& frame) const {
     // Penumbras reach out by half the lamp's width as seen from the ground, stretched where it stands low.
     const float lowness = std::max(key_.y(), lowest_light);
     const float margin = ShadowMaps::lamp * top / (lowness * lowness);
-    const Eigen::Array2f size(width_, height_);
-    const Eigen::Array2f from = ((low - margin - low_) / extent_ * size - 4).max(0).min(size);
-    const Eigen::Array2f to = ((high + margin - low_) / extent_ * size + 5).max(0).min(size);
+    return {low - margin, (high - low).max(-2 * margin) + 2 * margin};
+}
+
+/// Lays the key light's map around `shadow`, by whole texels so that what stands still keeps its place in it, and gives
+/// the part of it where the shadow is.
+PixelRect Ground::place(const Region& shadow) {
+    constexpr float rim = 5;  // texels, for the map's softening
+    const float sides = static_cast<float>(size_);
+    const float texel = stepped(shadow.extent.maxCoeff() / (sides - 2 * rim - 1), least_texel_);
+    const auto snapped = [&](const Eigen::Array2f& at) { return Eigen::Array2f((at / texel).floor()); };
+    const Eigen::Array2f first = snapped(shadow.low + 0.5f * shadow.extent) - std::floor(0.5f * sides);
+    region_ = {first * texel, Eigen::Array2f::Constant(sides * texel)};
+    const Eigen::Array2f from = (snapped(shadow.low) - first - rim).max(0).min(sides);
+    const Eigen::Array2f to = (snapped(shadow.low + shadow.extent) - first + rim + 1).max(0).min(sides);
     return {static_cast<int>(from.x()), static_cast<int>(from.y()), static_cast<int>(to.x() - from.x()),
             static_cast<int>(to.y() - from.y())};
 }
 
-void Ground::light(const DrawFrame& frame, const ShadowMaps& shadows) const {
+void Ground::set_regions() const {
+    const auto set = [](const GlProgram& program, const char* name, const Region& region) {
+        program.use();
+        glUniform4f(program.uniform(name), region.low.x(), region.low.y(), region.extent.x(),
+                    region.extent.y());
+    };
+    set(open_, "region", open_region_);
+    set(visible_, "region", region_);
+    set(shown_, "region", region_);
+    set(shown_, "open_region", open_region_);
+}
+
+void Ground::soften(GLuint map, GLuint target) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, target);
+    glActiveTexture(GL_TEXTURE0 + first_unit);
+    glBindTexture(GL_TEXTURE_2D, map);
+    soft_.use();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Ground::light(const DrawFrame& frame, const ShadowMaps& shadows) {
     if (!scene_->show_ground) return;
+    const Eigen::Array2f middle(shadows.centre().x(), shadows.centre().z());
+    open_region_ = {middle - 2 * shadows.radius(), Eigen::Array2f::Constant(4 * shadows.radius())};
+    const PixelRect rect = place(shadow_region(frame));
+    set_regions();
     shadows.bind();
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     glDisable(GL_FRAMEBUFFER_SRGB);
     glBindVertexArray(square_);
-    glBindFramebuffer(GL_FRAMEBUFFER, open_target_);
     glViewport(0, 0, open_size, open_size);
+    glBindFramebuffer(GL_FRAMEBUFFER, rough_open_target_);
     open_.use();
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    soften(rough_open_map_, open_target_);
 
-    const PixelRect rect = shadow_rect(frame);
-    glViewport(0, 0, width_, height_);
+    glViewport(0, 0, size_, size_);
     glClearColor(1, 1, 1, 1);
     for (const GLuint target : {GLuint{visible_target_}, GLuint{soft_target_}}) {
         glBindFramebuffer(GL_FRAMEBUFFER, target);
@@ -150,11 +175,7 @@ void Ground::light(const DrawFrame& frame, const ShadowMaps& shadows) const {
     glBindFramebuffer(GL_FRAMEBUFFER, visible_target_);
     visible_.use();
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    glBindFramebuffer(GL_FRAMEBUFFER, soft_target_);
-    glActiveTexture(GL_TEXTURE0 + first_unit);
-    glBindTexture(GL_TEXTURE_2D, visible_map_);
-    soft_.use();
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    soften(visible_map_, soft_target_);
     glDisable(GL_SCISSOR_TEST);
 }
 

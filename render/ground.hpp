@@ -12,33 +12,37 @@ namespace unravel::render {
 /// looked up from the picture.
 class Ground {
 public:
-    /// `reach`: how far it goes from the scene's centre [m]; `map_size`: texels along the map's longer side.
-    /// `encoded`: shaders write sRGB.
-    Ground(const DrawScene& scene, float reach, int map_size, bool encoded);
+    /// `map_size`: texels along a side of its map. `encoded`: shaders write sRGB.
+    Ground(const DrawScene& scene, int map_size, bool encoded);
 
-    /// Lights the map by this frame's shadow maps, which are to be bound.
-    void light(const DrawFrame& frame, const ShadowMaps& shadows) const;
+    /// Lights the maps, laid where this frame's shapes are, by its shadow maps.
+    void light(const DrawFrame& frame, const ShadowMaps& shadows);
     /// Draws it: lit, or as a faint patch for the component view.
     void draw(DrawStyle style, const Vec3f& eye) const;
 
 private:
-    static constexpr int open_size = 48;  ///< openness to the sky varies slowly
+    static constexpr int open_size = 80;  ///< openness to the sky varies slowly
     static constexpr int cells = 24;      ///< cells along a side of the ground as it is lit
     static constexpr int first_unit = 3;  ///< texture units before are the shadow maps'
-    static constexpr float fade_begin = 0.2f, fade_end = 0.95f;  ///< of its reach
 
+    /// Part of the ground that a map lies on: x and z of its corner, and its sides [m].
+    struct Region {
+        Eigen::Array2f low, extent;
+    };
     bool seen_from(const Vec3f& eye) const { return scene_->show_ground && eye.y() > scene_->ground_height; }
-    PixelRect shadow_rect(const DrawFrame& frame) const;
+    Region shadow_region(const DrawFrame& frame) const;
+    PixelRect place(const Region& shadow);
+    void set_regions() const;
+    void soften(GLuint map, GLuint target) const;
 
     const DrawScene* scene_;
-    Vec3f key_, centre_;
-    float reach_;
-    Eigen::Array2f low_, extent_;  ///< x and z of the map's corner, and its size [m]
-    int width_, height_;           ///< of the map [px]
-    PixelRect shade_;              ///< of the map: outside it nothing casts a shadow
+    Vec3f key_;
+    int size_;                      ///< of the key light's maps [px]
+    float least_texel_ = 0;         ///< of those maps [m]; larger by steps where shadows are wide
+    Region open_region_, region_;   ///< of this frame
     GlProgram open_, visible_, soft_, shown_, quiet_;
-    GlTexture open_map_, visible_map_, soft_map_;
-    GlFramebuffer open_target_, visible_target_, soft_target_;
+    GlTexture rough_open_map_, open_map_, visible_map_, soft_map_;
+    GlFramebuffer rough_open_target_, open_target_, visible_target_, soft_target_;
     GlVertexArray square_, grid_;
     GlBuffer corners_, cells_;
 };

@@ -28,9 +28,8 @@ constexpr float least_sheet = 0.16f;
 constexpr float key_strength = 1.2f, fill_strength = 0.14f, sky_strength = 0.36f;
 
 /// The part of the frame block that is the same for every frame and style.
-FrameBlock fixed_block(const DrawScene& scene, const ShadowMaps& shadows, float reach) {
+FrameBlock fixed_block(const DrawScene& scene) {
     FrameBlock block{};
-    shadows.describe(block);
     const Vec3f key = scene.key_direction.normalized();
     // A lamp of warm white, a cooler fill from the other side, a sky tinted by the background, light off the
     // ground.
@@ -42,11 +41,10 @@ FrameBlock fixed_block(const DrawScene& scene, const ShadowMaps& shadows, float 
     const Vec3f sky = 0.5f * (Vec3f(0.90f, 0.95f, 1.0f) + background / brightest);
     block.sky_color << sky_strength * sky, 0;
     const Vec3f ground = scene.show_ground ? linear(scene.ground) : Vec3f(0.2f, 0.2f, 0.2f);
-    block.bounce_color << (0.5f * ground + Vec3f::Constant(0.03f)), 0;
-    const Vec3f centre = 0.5f * (scene.bounds_low + scene.bounds_high);
-    block.ground << centre.x(), centre.z(), 0.2f * reach, 0.95f * reach;
-    // Cloth touches solids at its particles and cuts their corners between them: solids yield by that much.
-    block.shadow.w() = std::min(0.012f, 0.5f * scene.spacing);
+    // Off ground that key light and sky reach, as most of what a place sees of it is.
+    block.bounce_color << ground.cwiseProduct(std::max(key.y(), 0.f) * block.key_color.head<3>() +
+                                              block.sky_color.head<3>()),
+        0;
     return block;
 }
 
@@ -99,11 +97,11 @@ struct Renderer::Parts {
           readback(asked.width, asked.height),
           solids(draw_scene, framebuffer.encoded()),
           shadows(draw_scene, context.software() ? 1024 : 2048),
-          cloths(draw_scene, context.software(), framebuffer.encoded()),
+          cloths(draw_scene, {context.software(), framebuffer.encoded(), framebuffer.supersample()}),
           wires(draw_scene),
-          ground(draw_scene, solids.reach(), context.software() ? 512 : 1024, framebuffer.encoded()),
+          ground(draw_scene, context.software() ? 512 : 1024, framebuffer.encoded()),
           outlines(draw_scene, framebuffer.encoded()),
-          block(fixed_block(draw_scene, shadows, solids.reach())) {
+          block(fixed_block(draw_scene)) {
         allocate_buffer(GL_UNIFORM_BUFFER, block_buffer, sizeof(FrameBlock));
         edges = draw_scene.edges.size();
         for (const ClothMesh& mesh : draw_scene.cloths)
@@ -111,7 +109,7 @@ struct Renderer::Parts {
     }
 
     void check(DrawStyle style, const DrawFrame& frame) const;
-    void update_block(DrawStyle style, const CameraView& view);
+    void update_block(DrawStyle style, const DrawFrame& frame);
     void draw_textured(DrawStyle style, const DrawFrame& frame, int exposure, int exposures);
     void draw_components(const DrawFrame& frame, int exposure, int exposures);
     float wire_gap(const DrawFrame& frame) const;
@@ -140,10 +138,22 @@ void Renderer::Parts::check(DrawStyle style, const DrawFrame& frame) const {
         throw std::invalid_argument("a frame's edge strengths are not one for each edge");
 }
 
-void Renderer::Parts::update_block(DrawStyle style, const CameraView& view) {
+/// Aims light, camera and ground at where the frame's shapes are now.
+void Renderer::Parts::update_block(DrawStyle style, const DrawFrame& frame) {
+    const BoundingBox now = bounds_of(*scene, frame);
+    const BoundingBox all{scene->bounds_low.cwiseMin(now.low), scene->bounds_high.cwiseMax(now.high)};
+    shadows.aim(now.low, now.high);
+    shadows.describe(block);
+    // Ground and planes fade away around where the clip takes place, or wherever shapes have left to.
+    const Vec3f centre = 0.5f * (scene->bounds_low + scene->bounds_high);
+    const float farthest = (all.high - centre).cwiseMax(centre - all.low).norm();
+    const float reach = solids.set_reach(5 * farthest);
+    block.ground << centre.x(), centre.z(), 0.2f * reach, 0.95f * reach;
+    // Cloth touches solids at its particles and cuts their corners between them: solids yield by that much.
+    block.shadow.w() = std::min(0.012f, 0.5f * scene->spacing);
+
     const float aspect = static_cast<float>(framebuffer.width()) / static_cast<float>(framebuffer.height());
-    const Projection camera =
-        make_camera(view, aspect, scene->bounds_low, scene->bounds_high, 1.5f * solids.reach());
+    const Projection camera = make_camera(frame.camera, aspect, all.low, all.high, 1.5f * reach);
     const int factor = framebuffer.supersample();
     block.view_projection = camera.projection * camera.view;
     block.eye << camera.position, 1;
@@ -181,7 +191,10 @@ void Renderer::Parts::draw_textured(DrawStyle style, const DrawFrame& frame, int
     solids.update_shapes(frame);
     shadows.draw([&](const Eigen::Matrix4f& transform, bool coarse) {
         depth.use();
-        solids.draw_casters(frame, depth_transform, transform, coarse);
+        // Solids yield to cloth that lies on them here too, or its corners would be in their shadow.
+        Eigen::Matrix4f behind = transform;
+        behind(2, 3) += block.shadow.w() / shadows.radius();
+        solids.draw_casters(frame, depth_transform, behind, coarse);
         glUniformMatrix4fv(depth_transform, 1, GL_FALSE, transform.data());
         if (coarse)
             cloths.draw_coarse();
@@ -245,7 +258,7 @@ void Renderer::submit(DrawStyle style, std::span<const DrawFrame> exposures) {
     const int n = static_cast<int>(exposures.size());
     for (int k = 0; k < n; ++k) {
         const DrawFrame& frame = exposures[static_cast<std::size_t>(k)];
-        parts_->update_block(style, frame.camera);
+        parts_->update_block(style, frame);
         if (style == DrawStyle::components)
             parts_->draw_components(frame, k, n);
         else

@@ -1,5 +1,6 @@
 #include "render/shadow.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -9,13 +10,20 @@ namespace unravel::render {
 
 namespace {
 
-/// Parallel projection from `direction` that maps the sphere (centre, radius) to clip space.
-Eigen::Matrix4f parallel(const Vec3f& centre, float radius, const Vec3f& direction) {
+/// Parallel projection from `direction` that maps the sphere (centre, radius) to clip space, `texels` along a side
+/// that lie where they lie for any other centre.
+Eigen::Matrix4f parallel(const Vec3f& centre, float radius, const Vec3f& direction, int texels) {
+    const Eigen::Matrix4f turn = look_at(direction, Vec3f::Zero(), Vec3f(0, 1, 0));
+    const float texel = 2 * radius / static_cast<float>(texels);
+    Vec3f middle = turn.topLeftCorner<3, 3>() * centre;
+    middle = (middle / texel).array().round() * texel;
     Eigen::Matrix4f squeeze = Eigen::Matrix4f::Identity();
     squeeze(0, 0) = squeeze(1, 1) = 1 / radius;
-    squeeze(2, 2) = -1 / radius;
-    squeeze(2, 3) = -2;  // the eye stands two radii away
-    return squeeze * look_at(centre + 2 * radius * direction, centre, Vec3f(0, 1, 0));
+    squeeze(2, 2) = -1 / radius;  // what is nearest to the light has depth −1
+    squeeze.col(3).head<3>() = -squeeze.diagonal().head<3>().cwiseProduct(middle);
+    Eigen::Matrix4f rotation = Eigen::Matrix4f::Identity();
+    rotation.topLeftCorner<3, 3>() = turn.topLeftCorner<3, 3>();
+    return squeeze * rotation;
 }
 
 /// Clip space to a tile of a texture: x, y, z in [0, 1] scaled and moved.
@@ -36,21 +44,31 @@ void make_depth_map(GLuint texture, GLuint framebuffer, int width, int height) {
 
 }  // namespace
 
+float stepped(float size, float least) {
+    const float steps = std::ceil(4 * std::log2(std::max(size, 1e-3f) / least) - 1e-3f);
+    return least * std::exp2(0.25f * steps);
+}
+
 ShadowMaps::ShadowMaps(const DrawScene& scene, int key_size)
-    : key_size_(key_size),
-      radius_(0.52f * (scene.bounds_high - scene.bounds_low).norm()),
-      key_direction_(scene.key_direction.normalized()) {
-    const Vec3f centre = 0.5f * (scene.bounds_low + scene.bounds_high);
-    key_transform_ = parallel(centre, radius_, key_direction_);
+    : key_size_(key_size), key_direction_(scene.key_direction.normalized()) {
     for (int k = 0; k < FrameBlock::sky_directions; ++k) {
         // Two rings, the upper one turned by half a step: together they spread evenly over the half sphere.
         const float height = k < 4 ? 0.85f : 0.32f, across = std::sqrt(1 - height * height);
         const float angle = std::numbers::pi_v<float> / 4 * (2 * (k % 4) + (k < 4 ? 0.4f : 1.4f));
         sky_directions_[k] = {across * std::cos(angle), height, across * std::sin(angle)};
-        sky_transforms_[k] = parallel(centre, radius_, sky_directions_[k]);
     }
     make_depth_map(key_map_, key_target_, key_size_, key_size_);
     make_depth_map(sky_maps_, sky_target_, columns * tile, rows * tile);
+    aim(scene.bounds_low, scene.bounds_high);
+}
+
+void ShadowMaps::aim(const Vec3f& low, const Vec3f& high) {
+    centre_ = 0.5f * (low + high);
+    // A little more than the sphere: its centre moves by up to half a texel.
+    radius_ = stepped(0.51f * (high - low).norm(), 1);
+    key_transform_ = parallel(centre_, radius_, key_direction_, key_size_);
+    for (int k = 0; k < FrameBlock::sky_directions; ++k)
+        sky_transforms_[k] = parallel(centre_, radius_, sky_directions_[k], tile);
 }
 
 void ShadowMaps::describe(FrameBlock& block) const {
@@ -70,10 +88,9 @@ void ShadowMaps::draw(const DrawCasters& draw_casters) const {
     glDepthFunc(GL_LESS);
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
+    // Depths stay as they are: an offset by slope would put what stands edge-on to the light behind everything.
     glDisable(GL_CULL_FACE);   // a cloth has no inside
     glEnable(GL_DEPTH_CLAMP);  // what has moved out of the scene's bounds casts all the same
-    glEnable(GL_POLYGON_OFFSET_FILL);
-    glPolygonOffset(1.5f, 2);
     glBindFramebuffer(GL_FRAMEBUFFER, key_target_);
     glViewport(0, 0, key_size_, key_size_);
     glClear(GL_DEPTH_BUFFER_BIT);
@@ -86,7 +103,6 @@ void ShadowMaps::draw(const DrawCasters& draw_casters) const {
         glViewport((k % columns) * tile, (k / columns) * tile, tile, tile);
         draw_casters(sky_transforms_[k], true);
     }
-    glDisable(GL_POLYGON_OFFSET_FILL);
     glDisable(GL_DEPTH_CLAMP);
 }
 

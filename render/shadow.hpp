@@ -18,10 +18,12 @@ public:
     /// small maps.
     using DrawCasters = std::function<void(const Eigen::Matrix4f& transform, bool coarse)>;
 
-    /// Maps cover the sphere around the scene's bounds.
     ShadowMaps(const DrawScene& scene, int key_size);
 
-    /// Fills in the parts of the block that belong to shadows; they never change.
+    /// Aims the maps at the sphere around a frame's box of casters [m], wherever in the clip they have come to. Its
+    /// radius grows in steps and its centre by whole texels: shadows of what stands still do not crawl.
+    void aim(const Vec3f& low, const Vec3f& high);
+    /// Fills in the parts of the block that belong to shadows as they are aimed.
     void describe(FrameBlock& block) const;
     void draw(const DrawCasters& draw_casters) const;
     /// Binds the maps to their texture units.
@@ -29,18 +31,24 @@ public:
     /// Points a program's samplers at those units.
     static void connect(const GlProgram& program);
 
+    const Vec3f& centre() const { return centre_; }  ///< of what the maps hold [m]
+    float radius() const { return radius_; }         ///< likewise [m]
+
 private:
     static constexpr int tile = 256, columns = 4, rows = 2;
     static constexpr int unit_key = 1, unit_sky = 2;
 
     int key_size_;
-    float radius_;
-    Vec3f key_direction_;
+    float radius_ = 1;
+    Vec3f key_direction_, centre_{0, 0, 0};
     Eigen::Matrix4f key_transform_;  ///< world to clip space
     std::array<Eigen::Matrix4f, FrameBlock::sky_directions> sky_transforms_;
     std::array<Vec3f, FrameBlock::sky_directions> sky_directions_;
     GlTexture key_map_, sky_maps_;
     GlFramebuffer key_target_, sky_target_;
 };
+
+/// `least` times the smallest power of 2^¼ that brings it to `size`: sizes that follow a scene in steps.
+float stepped(float size, float least);
 
 }  // namespace unravel::render

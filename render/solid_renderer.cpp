@@ -16,7 +16,7 @@ constexpr float quiet_ground = 0.3f;
 
 SolidRenderer::Shaded::Shaded(bool fades, bool encoded)
     : program({"frame.glsl", "light.glsl", "sky.glsl", "yield.glsl", "solid.vert"},
-              {"frame.glsl", "light.glsl", "pattern.glsl", "color.glsl", "written.glsl", "solid.frag"},
+              {"frame.glsl", "quads.glsl", "light.glsl", "color.glsl", "written.glsl", "solid.frag"},
               fmt::format("#define FADES {}\n#define ENCODED {}\n", fades ? 1 : 0, encoded ? 1 : 0)),
       model(program.uniform("model")),
       albedo(program.uniform("albedo")),
@@ -29,13 +29,15 @@ SolidRenderer::SolidRenderer(const DrawScene& scene, bool encoded)
     : scene_(&scene),
       centre_(0.5f * (scene.bounds_low + scene.bounds_high)),
       reach_(2.5f * (scene.bounds_high - scene.bounds_low).norm()),
+      reach_now_(reach_),
       shaded_(false, encoded),
       fading_(true, encoded) {
     for (std::size_t i = 0; i < scene.solids.size(); ++i) {
         const SolidMesh& solid = scene.solids[i];
-        if (solid.shape != SolidShape::plane)
-            parts_.push_back({Mesh(tessellate(solid)), Mesh(tessellate(solid, 0.4f)), static_cast<int>(i),
-                              false, linear(solid.color)});
+        if (solid.shape == SolidShape::plane) continue;
+        parts_.push_back({Mesh(tessellate(solid)), Mesh(tessellate(solid, 0.4f)), static_cast<int>(i), false,
+                          linear(solid.color)});
+        if (solid.deforms) parts_.back().creased = crease(solid.triangles, solid.positions);
     }
     for (std::size_t i = 0; i < scene.solids.size(); ++i)
         if (scene.solids[i].shape == SolidShape::plane)
@@ -62,7 +64,7 @@ void SolidRenderer::update_shapes(const DrawFrame& frame) {
         const SolidMesh& solid = scene_->solids[static_cast<std::size_t>(part.solid)];
         if (!solid.deforms) continue;
         const Tessellation shape =
-            tessellate_mesh(solid.triangles, frame.solid_positions[static_cast<std::size_t>(part.solid)]);
+            tessellate_mesh(part.creased, frame.solid_positions[static_cast<std::size_t>(part.solid)]);
         part.fine.update(shape);
         part.coarse.update(shape);
     }
@@ -95,7 +97,9 @@ Eigen::Matrix4f SolidRenderer::pose(const Part& part, const DrawFrame& frame) co
         const Vec3f normal = pose.linear().col(1);
         pose.translation() = centre_ - normal * normal.dot(centre_ - pose.translation());
     }
-    return pose.matrix();
+    Eigen::Matrix4f matrix = pose.matrix();
+    if (part.fades) matrix.topLeftCorner<3, 3>() *= reach_now_ / reach_;
+    return matrix;
 }
 
 void SolidRenderer::draw_casters(const DrawFrame& frame, GLint transform_uniform,

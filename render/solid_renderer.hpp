@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "render/draw_scene.hpp"
@@ -17,8 +18,8 @@ public:
     /// Uploads the frame's positions of meshes that deform. Before anything else of the frame is drawn.
     void update_shapes(const DrawFrame& frame);
 
-    /// How far planes go from the scene's centre [m].
-    float reach() const { return reach_; }
+    /// How far planes go from the scene's centre in this frame [m]: 2.5 times the scene's diagonal, or further.
+    float set_reach(float at_least) { return reach_now_ = std::max(reach_, at_least); }
 
     /// What casts shadows, by the program in use, whose matrix `transform` is set for each. `coarse`: for
     /// small maps.
@@ -49,7 +50,8 @@ private:
         Mesh fine, coarse;
         int solid = 0;
         bool fades = false;
-        Vec3f albedo;  ///< linear
+        Vec3f albedo;             ///< linear
+        CreasedMesh creased = {};  ///< of a mesh that deforms
     };
     Eigen::Matrix4f pose(const Part& part, const DrawFrame& frame) const;
     void draw_shaded(const Part& part, const DrawFrame& frame) const;
@@ -57,7 +59,7 @@ private:
 
     const DrawScene* scene_;
     Vec3f centre_;
-    float reach_;
+    float reach_, reach_now_;
     std::vector<Part> parts_;
     // Solids' program, and the one of planes, which fade.
     struct Shaded {

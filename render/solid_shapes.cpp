@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <numeric>
 
 namespace unravel::render {
 
@@ -112,19 +113,69 @@ Tessellation tessellate_box(const SolidMesh& solid, int straight) {
 
 }  // namespace
 
-Tessellation tessellate_mesh(std::span<const std::array<std::uint32_t, 3>> triangles,
-                             std::span<const Vec3f> positions) {
-    Tessellation mesh;
-    mesh.positions.assign(positions.begin(), positions.end());
-    mesh.normals.assign(positions.size(), Vec3f::Zero());
-    for (const auto& [a, b, c] : triangles) {
-        // The cross product's length is twice the area: the weight comes with it.
-        const Vec3f n = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
-        for (const std::uint32_t v : {a, b, c}) mesh.normals[v] += n;
-        mesh.indices.insert(mesh.indices.end(), {a, b, c});
+CreasedMesh crease(std::span<const std::array<std::uint32_t, 3>> triangles,
+                   std::span<const Vec3f> positions) {
+    const float least_cosine = std::cos(40 * pi / 180);
+    std::vector<Vec3f> normals;
+    for (const auto& [a, b, c] : triangles)
+        normals.push_back((positions[b] - positions[a]).cross(positions[c] - positions[a]).normalized());
+
+    // Corners of triangles, three each, are joined where a smooth edge runs from their vertex.
+    std::vector<std::uint32_t> joined(3 * triangles.size());
+    std::iota(joined.begin(), joined.end(), 0u);
+    const auto root = [&](std::uint32_t corner) {
+        while (joined[corner] != corner) corner = joined[corner] = joined[joined[corner]];
+        return corner;
+    };
+    struct Side {
+        std::uint32_t low, high;  // vertices
+        std::uint32_t at_low, at_high;  // corners
+    };
+    std::vector<Side> sides;
+    for (std::uint32_t t = 0; t < triangles.size(); ++t)
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const std::uint32_t i = 3 * t + k, j = 3 * t + (k + 1) % 3;
+            const std::uint32_t a = triangles[t][k], b = triangles[t][(k + 1) % 3];
+            sides.push_back(a < b ? Side{a, b, i, j} : Side{b, a, j, i});
+        }
+    std::ranges::stable_sort(sides, {}, [](const Side& side) { return std::pair(side.low, side.high); });
+    for (std::size_t s = 0; s + 1 < sides.size(); ++s) {
+        const Side &one = sides[s], &other = sides[s + 1];
+        if (one.low != other.low || one.high != other.high) continue;
+        if (normals[one.at_low / 3].dot(normals[other.at_low / 3]) < least_cosine) continue;
+        joined[root(other.at_low)] = root(one.at_low);
+        joined[root(other.at_high)] = root(one.at_high);
     }
-    for (Vec3f& n : mesh.normals) n = n.norm() > 0 ? Vec3f(n.normalized()) : Vec3f(0, 1, 0);
+
+    CreasedMesh mesh;
+    constexpr std::uint32_t unset = 0xffffffffu;
+    std::vector<std::uint32_t> vertex_of(joined.size(), unset);
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+        std::array<std::uint32_t, 3>& out = mesh.triangles.emplace_back();
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            std::uint32_t& vertex = vertex_of[root(3 * t + k)];
+            if (vertex == unset) {
+                vertex = static_cast<std::uint32_t>(mesh.source.size());
+                mesh.source.push_back(triangles[t][k]);
+            }
+            out[k] = vertex;
+        }
+    }
     return mesh;
+}
+
+Tessellation tessellate_mesh(const CreasedMesh& mesh, std::span<const Vec3f> positions) {
+    Tessellation out;
+    for (const std::uint32_t v : mesh.source) out.positions.push_back(positions[v]);
+    out.normals.assign(mesh.source.size(), Vec3f::Zero());
+    for (const auto& [a, b, c] : mesh.triangles) {
+        // The cross product's length is twice the area: the weight comes with it.
+        const Vec3f n = (out.positions[b] - out.positions[a]).cross(out.positions[c] - out.positions[a]);
+        for (const std::uint32_t v : {a, b, c}) out.normals[v] += n;
+        out.indices.insert(out.indices.end(), {a, b, c});
+    }
+    for (Vec3f& n : out.normals) n = n.norm() > 0 ? Vec3f(n.normalized()) : Vec3f(0, 1, 0);
+    return out;
 }
 
 Tessellation tessellate(const SolidMesh& solid, float detail) {
@@ -144,7 +195,7 @@ Tessellation tessellate(const SolidMesh& solid, float detail) {
         case SolidShape::capsule:
             return tessellate_capsule(solid, sectors);
         case SolidShape::mesh:
-            return tessellate_mesh(solid.triangles, solid.positions);
+            return tessellate_mesh(crease(solid.triangles, solid.positions), solid.positions);
     }
     return {};
 }

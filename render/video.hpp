@@ -19,6 +19,7 @@ struct VideoSettings {
     int fps_num = 30, fps_den = 1;   ///< frames per second as a fraction
     std::string codec;               ///< an encoder's name; empty: the first of the container's that opens
     int crf = -1;           ///< constant quality, smaller is better; −1: the encoder's entry in our table
+    bool thin_lines = false;  ///< pictures are of coloured wires: where no crf is asked, a better one
     std::string preset;     ///< effort, by the encoder's name for it; empty: a fast one
     int threads = 4;        ///< bytes depend on it, so it never follows the machine
     bool alpha = false;     ///< keep the frames' alpha; .mkv only

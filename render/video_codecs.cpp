@@ -120,7 +120,9 @@ std::string set_quality(const EncoderEntry& entry, const VideoSettings& settings
     if (!settings.preset.empty() && !knows_effort(entry, settings.preset))
         refuse(fmt::format("{} has no preset '{}'; it has: {}", entry.codec, settings.preset, entry.efforts));
     if (entry.quality_option) {
-        const int quality = settings.crf >= 0 ? settings.crf : entry.quality;
+        // Thin lines lose their colour first, since it is kept at half the size.
+        const int usual = settings.thin_lines ? std::max(entry.quality - 6, 0) : entry.quality;
+        const int quality = settings.crf >= 0 ? settings.crf : usual;
         // FFmpeg counts this one option in steps of 1/118 of a quantiser.
         if (std::string_view(entry.quality_option) == "global_quality")
             context.global_quality = quality * FF_QP2LAMBDA;

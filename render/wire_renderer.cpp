@@ -6,6 +6,7 @@ namespace unravel::render {
 
 namespace {
 
+constexpr float sparse_gap = 3.5f;  // px between particles above which they are dots, in full from twice that on
 constexpr float invisible_gap = 1.2f;  // px; wire.vert lets springs vanish as they come near it
 
 }  // namespace
@@ -26,6 +27,7 @@ WireRenderer::WireRenderer(const DrawScene& scene)
       own_colors_(wire_.uniform("own_colors")),
       wire_encoded_(wire_.uniform("encodes")),
       radius_(dot_.uniform("radius")),
+      dot_strength_(dot_.uniform("strength")),
       dot_encoded_(dot_.uniform("encodes")) {
     // Display vertices between particles are no ends of springs.
     for (const auto& [a, b] : scene.edges) particles_ = std::max<std::size_t>(particles_, std::max(a, b) + 1);
@@ -93,11 +95,13 @@ void WireRenderer::draw(int height, float gap, bool encoded) const {
     glUniform1i(wire_encoded_, encoded ? 1 : 0);
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * edges_), GL_UNSIGNED_INT, nullptr);
 
-    // Dots only where they leave the lines between them in sight.
-    const float radius = std::min(1.5f * line_width(height), 0.16f * gap);
-    if (radius > 1.15f * line_width(height)) {
+    // Dots come in where they leave the lines between them in sight.
+    const float radius = std::min(1.5f * line_width(height), 0.22f * gap);
+    const float strength = std::clamp((gap - sparse_gap) / sparse_gap, 0.f, 1.f);
+    if (strength > 0) {
         dot_.use();
         glUniform1f(radius_, radius);
+        glUniform1f(dot_strength_, strength);
         glUniform1i(dot_encoded_, encoded ? 1 : 0);
         glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * particles_), GL_UNSIGNED_INT, nullptr);
     }

@@ -41,7 +41,7 @@ private:
     GlVertexArray vertex_array_;
     GlBuffer quads_;
     GlProgram wire_, dot_;
-    GLint width_, wire_spacing_, own_colors_, wire_encoded_, radius_, dot_encoded_;
+    GLint width_, wire_spacing_, own_colors_, wire_encoded_, radius_, dot_strength_, dot_encoded_;
 };
 
 }  // namespace unravel::render

@@ -21,7 +21,7 @@ void main() {
 #if LIGHT_AT_VERTICES
     vec3 v = normalize(eye.xyz - position);
     float visible =
-        key_visibility(position, dot(normal, key_direction.xyz) >= 0.0 ? normal : -normal, vertex_gap, 0.0, true);
+        key_visibility(position, dot(normal, key_direction.xyz) >= 0.0 ? normal : -normal, normal, vertex_gap, true);
     vec3 front = seen_normal(normal, v), back = seen_normal(-normal, v);
     FabricLight light = fabric_light(front, front, v, mean_albedo[0], open.x, visible);
     diffuse_front = light.diffuse;

@@ -33,7 +33,7 @@ FabricLight fabric_light(vec3 smooth_n, vec3 n, vec3 v, vec3 mean, float open, f
     // The wrap may not carry light past where the surface itself turns its back on the lamp.
     float diffuse = clamp((nl + wrap) / ((1.0 + wrap) * (1.0 + wrap)), 0.0, 1.0) * smoothstep(-0.12, 0.18, surface_nl);
     float nh = clamp(dot(n, normalize(l + v)), 0.0, 1.0), lit = max(nl, 0.0);
-    float rim = pow(1.0 - nv, 4.0);
+    float away2 = (1.0 - nv) * (1.0 - nv), rim = away2 * away2;
     vec3 ambient = ambient_light(n) * (0.12 + 0.88 * open);
 
     FabricLight light;

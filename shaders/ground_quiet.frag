@@ -4,4 +4,7 @@ uniform vec2 fade;
 in vec2 from_centre;
 out vec4 color;
 
-void main() { color = vec4(mix(albedo, background.rgb, smoothstep(fade.x, fade.y, length(from_centre))), 1.0); }
+void main() {
+    float away = smoothstep(fade.x, fade.y, length(from_centre) / ground.w);
+    color = vec4(written(mix(albedo, background.rgb, away)), 1.0);
+}

@@ -1,10 +1,8 @@
 layout(location = 0) in vec3 position;
-uniform float extent;  // share of the square to be drawn
+uniform vec2 fade;     // shares of the ground's reach
 out vec2 from_centre;  // m
 
 void main() {
-    vec3 place = vec3(ground.x, position.y, ground.y);
-    place.xz += (position.xz - ground.xy) * extent;
-    from_centre = place.xz - ground.xy;
-    gl_Position = view_projection * vec4(place, 1.0);
+    from_centre = position.xz * (fade.y * ground.w);
+    gl_Position = view_projection * vec4(ground.x + from_centre.x, position.y, ground.y + from_centre.y, 1.0);
 }

@@ -1,5 +1,5 @@
 // The visible share without the pattern of its lookups: four linear ones at corners of texels, the mean of the 4 × 4
-// texels over which the pattern repeats. Its window leads by half a texel; ground.vert takes that back.
+// texels over which the pattern repeats. Its window leads by half a texel; ground.frag takes that back.
 uniform sampler2D visible_map;
 in vec2 at_map;
 out vec4 color;

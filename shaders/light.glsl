@@ -7,54 +7,102 @@ float depth_at(sampler2D depths, vec2 at, ivec4 tile) {
     return texelFetch(depths, tile.xy + clamp(ivec2(at * vec2(tile.zw)), ivec2(0), tile.zw - 1), 0).r;
 }
 
+// How depth rises across a map along a surface of normal n: per unit of x and y. Steeper than the limit a surface is
+// hardly lit.
+vec2 rise_of(mat4 matrix, vec3 n) {
+    vec3 m = mat3(matrix) * n;
+    vec2 rise = -m.xy * (abs(m.z) > 1e-12 ? 1.0 / m.z : 0.0);
+    return rise * min(1.0, 4.0 / max(length(rise), 1e-6));
+}
+
+// Mean over the 2 × 2 pixels that are drawn together, QUADS; each looks up what the others leave out.
+vec2 quad_mean(vec2 value) {
+#ifdef QUADS
+    vec2 odd = vec2(ivec2(gl_FragCoord.xy) & 1);
+    value += dFdx(value) * (0.5 - odd.x);
+    value += dFdy(value) * (0.5 - odd.y);
+#endif
+    return value;
+}
+
+// Which part of the lookups is a place's own, of `parts` that make up the whole.
+struct Turn {
+    float angle, part, parts;
+};
+
 // Share of a lamp that is seen from `at`, in the lamp's map: x, y in [0, 1] over its tile (corner and size in
 // texels), z a depth.
-// Percentage-closer soft shadows: the mean distance of blockers sets the width of the penumbra. [Fernando 2005]
+// Percentage-closer soft shadows: the mean distance of blockers sets the width of the penumbra. [Fernando 2005] What a
+// lookup finds is held against the receiver's own plane in the middle of that very texel, so that the plane does not
+// shade itself, and blockers that nearly touch it are found. [Isidoro 2006, Shadow Mapping: GPU-based Tips and Techniques]
+//   rise     of the receiver's plane
 //   source   tangent of the lamp's radius
-//   slope    how steeply the receiver's own surface may rise within the disk, so as not to block itself
 //   least    radius of the disk where the blockers are near: no sharper than the places that look are apart
-//   turn     angle by which the disk of lookups is turned
-float soft_visibility(sampler2D depths, vec3 at, ivec4 tile, float source, float slope, float least, float turn,
-                      int searches, int taps) {
+// Returns that share and the disk's radius.
+vec2 soft_visibility(sampler2D depths, vec3 at, vec2 rise, ivec4 tile, float source, float least, Turn turn, int searches,
+                     int taps) {
     // Nothing casts from beyond the map's sides; beyond its far end there are only receivers.
     bool inside = all(greaterThan(at.xy, vec2(0.0))) && all(lessThan(at.xy, vec2(1.0)));
     // Loops that need no lookup get a length of none: llvmpipe spends on a branch that no pixel of a block takes as
     // much as on one that all take, but leaves a loop after its first round.
     if (!inside) searches = 0;
     const mat2 golden = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);
-    vec2 spoke = vec2(cos(turn), sin(turn));
-    float search = 0.35 * source;  // blockers up to 0.35 of the map's extent away
-    float sum = 0.0, count = 0.0;
+    // Places and lengths across the map in its texels.
+    vec2 spoke = vec2(cos(turn.angle), sin(turn.angle)), size = vec2(tile.zw), place = at.xy * size, last = size - 1.0;
+    float texel = 1.0 / size.x;
+    rise *= texel;
+    // No blocker is nearer to the lamp than the map's near end.
+    float search = max(min(at.z, 1.0) * source * size.x, 1.5), steepest = source * size.x / 0.7;
+    vec2 found = vec2(0.0);  // sum of blockers' depths, their number
     for (int i = 0; i < searches; ++i) {
-        float r = sqrt((float(i) + 0.5) / float(searches)) * search;
+        vec2 offset = spoke * (sqrt((float(i) + turn.part / turn.parts) / float(searches)) * search);
         spoke = golden * spoke;
-        float depth = depth_at(depths, at.xy + spoke * r, tile);
-        if (depth < min(at.z - 0.002 - slope * r, 1.0)) {
-            sum += depth;
-            count += 1.0;
-        }
+        ivec2 here = ivec2(clamp(place + offset, vec2(0.0), last));
+        float depth = texelFetch(depths, tile.xy + here, 0).r;
+        vec2 away = vec2(here) + 0.5 - place;
+        // It hides some of the lamp from this place only where it stands high enough for how far away it is.
+        if (depth < min(at.z + dot(rise, away) - 0.5 * texel, 1.0) && (at.z - depth + texel) * steepest > length(away) - 1.5)
+            found += vec2(depth, 1.0);
     }
-    // None or all in the way: full light or none.
-    bool rim = count > 0.0 && count < float(searches);
-    if (!rim) taps = 0;
-    float width = max(least, (at.z - sum / max(count, 1.0)) * source);
-    float lit = 0.0;
+    found = quad_mean(found);
+    if (found.y == 0.0) taps = 0;
+    float width = max(least, (at.z - found.x / max(found.y, 1e-3)) * source), lit = 0.0;
+    float disk = width * size.x, doubt = size.x;
     for (int i = 0; i < taps; ++i) {
-        float r = sqrt((float(i) + 0.5) / float(taps)) * width;
+        vec2 offset = spoke * (sqrt((float(i) + (turn.part + 0.5) / turn.parts) / float(taps)) * disk);
         spoke = golden * spoke;
-        lit += step(min(at.z - 0.0004 - 0.7 * slope * r, 1.0),
-                    depth_at(depths, at.xy + spoke * r, tile));
+        ivec2 here = ivec2(clamp(place + offset, vec2(0.0), last));
+        float plane = min(at.z + dot(rise, vec2(here) + 0.5 - place), 1.0);
+        // Within a texel's depth of the plane a lookup is in doubt.
+        lit += clamp(1.3 - (plane - texelFetch(depths, tile.xy + here, 0).r) * doubt, 0.0, 1.0);
     }
-    return rim ? lit / float(taps) : count == 0.0 ? 1.0 : 0.0;
+    return vec2(found.y == 0.0 ? 1.0 : lit / float(max(taps, 1)), width);
 }
 
-// Share of the key light that reaches p, whose surface faces the light along n (dot(n, l) > 0). Where it is not
-// `needed` the answer costs less and means nothing. `apart`: metres to the next place that is asked about.
-float key_visibility(vec3 p, vec3 n, float apart, float turn, bool needed) {
+// Share of the key light that reaches p, whose surface faces the light along n (dot(n, l) > 0), on a plane of normal
+// `flat_n`. Where it is not `needed` the answer costs less and means nothing. `apart`: metres to the next place that is
+// asked about.
+float key_visibility(vec3 p, vec3 n, vec3 flat_n, float apart, bool needed) {
+#ifdef QUADS
+    ivec2 odd = ivec2(gl_FragCoord.xy) & 1;
+    float part = float(odd.x + 2 * odd.y);
+    Turn turn = Turn(part * 1.5707963, part, 4.0);
+#else
+    Turn turn = Turn(0.0, 0.0, 1.0);
+#endif
     float away = 1.0 - dot(n, key_direction.xyz);
-    vec3 at = (shadow_matrix * vec4(p + n * shadow.x * (0.8 + 2.0 * away), 1.0)).xyz;
-    return soft_visibility(shadow_depth, at, ivec4(ivec2(0), textureSize(shadow_depth, 0)), key_direction.w, 0.5,
-                           max(shadow.x, 0.75 * apart) / shadow.y, turn, needed ? 6 : 0, 12);
+    vec3 at = (shadow_matrix * vec4(p + n * shadow.x * (0.5 + 2.0 * away), 1.0)).xyz;
+    vec2 seen = soft_visibility(shadow_depth, at, rise_of(shadow_matrix, flat_n), ivec4(ivec2(0), textureSize(shadow_depth, 0)),
+                                key_direction.w, max(1.6 * shadow.x, 0.75 * apart) / shadow.y, turn, needed ? 4 : 0, 8);
+#ifdef QUADS
+    // Edges that are sharper than two pixels stay so, and those where the four see all and nothing.
+    vec2 across = abs(dFdx(at.xy)) + abs(dFdy(at.xy));
+    float blur = clamp(1.5 * seen.y / max(max(across.x, across.y), 1e-9) - 0.75, 0.0, 1.0);
+    float mean = quad_mean(seen).x;
+    return mix(seen.x, mean, blur * (1.0 - smoothstep(0.2, 0.5, abs(seen.x - mean))));
+#else
+    return seen.x;
+#endif
 }
 
 // Light from all around at normal n, as if nothing stood in the way.

@@ -15,7 +15,7 @@ void main() {
     // Normalised Blinn–Phong of exponent 24, dimmed to a dielectric's 4% and rising at grazing angles.
     float away = 1.0 - clamp(dot(n, v), 0.0, 1.0), away2 = away * away, nh2 = nh * nh, nh8 = nh2 * nh2 * nh2 * nh2;
     float highlight = gloss * (0.04 + 0.5 * away2 * away2 * away) * (26.0 / 8.0) * (nh8 * nh8 * nh8);
-    float key = nl * key_visibility(world, n, 0.0, pattern_turn(), nl > 0.0);
+    float key = nl * key_visibility(world, n, cross(dFdx(world), dFdy(world)), 0.0, nl > 0.0);
     result += (albedo + highlight) * key_color.rgb * key;
 #if FADES
     float fade = smoothstep(ground.z, ground.w, distance(world, fade_centre));

@@ -7,7 +7,7 @@ out float openness;
 
 void main() {
     world = (model * vec4(position, 1.0)).xyz;
-    world_normal = mat3(model) * normal;
+    world_normal = normalize(mat3(model) * normal);
     openness = sky_openness(world, world_normal).x;
     gl_Position = yielding(world);
 }

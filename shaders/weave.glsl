@@ -35,10 +35,11 @@ float warp_on_top(vec2 s, vec2 w) {
 }
 #endif
 
-Woven woven(vec2 uv, bool front) {
+// `pixel`: how the window of one finished pixel reaches over the cloth: two vectors of (u, v) that span it [m].
+Woven woven(vec2 uv, mat2 pixel, bool front) {
     vec3 a = front ? yarn_front[0] : yarn_back[0], b = front ? yarn_front[1] : yarn_back[1];
-    vec2 size = fwidth(uv);
-    vec2 s = uv * per_thread, pixel = size * per_thread;
+    vec2 size = abs(pixel[0]) + abs(pixel[1]);
+    vec2 s = uv * per_thread, threads = size * per_thread;
 
     // Share of yarn a in the threads along v and along u, and in what is seen of both.
     float warp = 1.0, weft = 1.0, both = 1.0;
@@ -47,7 +48,7 @@ Woven woven(vec2 uv, bool front) {
     both = 0.89;
 #elif WEAVE == 1
     weft = 0.0;
-    both = stripe((s.x + s.y) * 0.25, (pixel.x + pixel.y) * 0.25);
+    both = stripe((s.x + s.y) * 0.25, (abs(pixel[0].x + pixel[0].y) + abs(pixel[1].x + pixel[1].y)) * (0.25 * per_thread));
 #elif WEAVE == 2
     warp = stripe(uv.x * per_period, size.x * per_period);
     weft = stripe(uv.y * per_period, size.y * per_period);
@@ -58,15 +59,17 @@ Woven woven(vec2 uv, bool front) {
 
     Woven result = Woven(mix(b, a, both), vec2(0.0));
 #if THREADS && WEAVE != 4
-    float detail = 1.0 - smoothstep(0.22, 0.6, max(pixel.x, pixel.y));
-    if (detail > 0.0) {
-        float top = warp_on_top(s, 1.4 * pixel);
-        vec2 cell = floor(s), within = fract(s) - 0.5, square = within * within;
+    // Along each axis threads fade where they grow too fine for it, whatever the other one shows.
+    vec2 detail = 1.0 - smoothstep(0.22, 0.6, threads);
+    if (detail.x + detail.y > 0.0) {
+        float top = warp_on_top(s, 1.4 * threads);
+        vec2 cell = floor(s), within = fract(s) - 0.5, square = mix(vec2(1.0 / 12.0), within * within, detail);
         // Across the thread on top the surface is round; along it, it dives under its neighbours. Their mean is 1.
         vec2 shade = 1.154 - 1.27 * square - 0.58 * square.yx;
-        shade *= 0.94 + 0.12 * fract(sin(vec2(cell.x, 78.233 + cell.y) * 12.9898) * 43758.5);  // no thread is like the next
+        vec2 own = fract(sin(vec2(cell.x, 78.233 + cell.y) * 12.9898) * 43758.5) - 0.5;  // no thread is like the next
+        shade *= 1.0 + 0.12 * detail * own;
         vec3 color = mix(mix(b, a, weft) * shade.y, mix(b, a, warp) * shade.x, top);
-        result.albedo = mix(result.albedo, color, detail);
+        result.albedo = mix(result.albedo, color, max(detail.x, detail.y));
         result.tilt = detail * within * mix(vec2(0.5, 1.0), vec2(1.0, 0.5), top);
     }
 #endif

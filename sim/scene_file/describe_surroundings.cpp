@@ -74,7 +74,10 @@ void describe(Fields& f, ClothLook& cloth) {
     f.text({"front_second", "\"#rrggbb\", second yarn of the front"}, cloth.front_second, TextKind::color);
     f.text({"back", "\"#rrggbb\""}, cloth.back, TextKind::color);
     f.number({"scale", "m, period of checks or stripes"}, cloth.scale, {1e-4, 100, false, "m"});
-    f.text({"texture", "PNG file in the scene's folder; replaces the weave"}, cloth.texture, TextKind::path);
+    f.text({"texture",
+            "PNG file in the scene's folder; replaces the weave on the front, once over a grid, on a mesh as its "
+            "texture coordinates say"},
+           cloth.texture, TextKind::path);
 }
 
 }  // namespace unravel::sim

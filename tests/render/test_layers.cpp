@@ -164,7 +164,7 @@ TEST_CASE("GL_a_ridge_wears_the_light_of_the_side_that_is_seen") {
     if (!context) return;
     // A roof whose ridge is seen nearly along one of its slopes. Its front is white and its back black; the
     // ridge's normals may point away from the viewer, but nothing black is seen.
-    const int n = 121;  // fine enough for light at vertices
+    const int n = 121;
     DrawScene scene = empty_scene({128, 128, 128});
     ClothMesh mesh;
     mesh.appearance.weave = WeavePattern::solid;

@@ -1,9 +1,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
 #include <random>
 
 #include "render/color.hpp"
 #include "render/palette.hpp"
+#include "render/png.hpp"
+#include "source_dir.hpp"
 
 using namespace unravel;
 using namespace unravel::render;
@@ -164,7 +167,92 @@ TEST_CASE("palette_colours_differ_for_the_colour_blind") {
         for (std::size_t i = 0; i < all.size(); ++i)
             for (std::size_t j = i + 1; j < all.size(); ++j) {
                 INFO("colours " << i << " and " << j);
-                // Side by side, 0.02 can just be told apart; three times that is plain to see.
-                CHECK((oklab(all[i], vision) - oklab(all[j], vision)).norm() > 0.06f);
+                // Side by side, 0.02 can just be told apart; four times that is plain to see.
+                CHECK((oklab(all[i], vision) - oklab(all[j], vision)).norm() > 0.08f);
             }
+    // Of all kinds of colour blindness deuteranopia is the most frequent.
+    for (std::size_t i = 0; i < component_palette.size(); ++i)
+        for (std::size_t j = i + 1; j < component_palette.size(); ++j)
+            CHECK((oklab(all[i], visions[2]) - oklab(all[j], visions[2])).norm() > 0.12f);
+}
+
+TEST_CASE("palette_a_component_that_parts_again_wears_what_it_wore_before_it_merged") {
+    const Edges edges = grid_edges(10);
+    ComponentColors colors;
+    std::vector<std::int32_t> apart(100), whole(100, 0), upper(100, 0);
+    for (int p = 0; p < 100; ++p) apart[p] = p < 40 ? 1 : p < 80 ? 0 : 2;  // three bands
+    for (int p = 80; p < 100; ++p) upper[p] = 1;                           // two of them merged
+    const std::vector<Rgb> before = colors.assign(apart, edges);
+    CHECK_FALSE(before[0] == before[50]);
+    for (int frame = 0; frame < 20; ++frame) colors.assign(whole, edges);
+    for (int frame = 0; frame < 5; ++frame) CHECK(colors.assign(upper, edges)[99] == before[99]);
+    CHECK(colors.assign(apart, edges) == before);
+}
+
+TEST_CASE("palette_what_parts_for_the_first_time_is_told_apart_where_nothing_joins_it") {
+    const Edges edges = grid_edges(10);
+    ComponentColors colors;
+    std::vector<std::int32_t> component(100, 0);
+    colors.assign(component, edges);
+    for (int p = 40; p < 60; ++p) component[p] = -1;  // held between two pieces
+    for (int p = 60; p < 100; ++p) component[p] = 1;
+    const std::vector<Rgb>& color = colors.assign(component, edges);
+    CHECK_FALSE(color[0] == color[99]);
+}
+
+TEST_CASE("palette_new_neighbours_differ_in_lightness") {
+    // Bands one after another: each has two neighbours at most, and there are colours of enough lightnesses.
+    const int n = 24;
+    const Edges edges = grid_edges(n);
+    std::vector<std::int32_t> bands(n * n);
+    for (int p = 0; p < n * n; ++p) bands[p] = p / (2 * n);
+    ComponentColors colors;
+    const std::vector<Rgb>& color = colors.assign(bands, edges);
+    for (const auto& [a, b] : edges) {
+        if (bands[a] == bands[b]) continue;
+        const float one = oklab(color[a], Eigen::Matrix3f::Identity()).x(),
+                    other = oklab(color[b], Eigen::Matrix3f::Identity()).x();
+        CHECK(std::abs(one - other) > 0.1f);
+    }
+}
+
+TEST_CASE("palette_colours_of_a_drape_hold_from_frame_to_frame") {
+    // Components of the 51 × 51 particles of a drape on a sphere: a row for each of its frames at 30 a second; red + 256
+    // green is the component, from 1 on, or 0 where a particle is fully constrained.
+    const Image record = read_png(std::filesystem::path(UNRAVEL_SOURCE_DIR) / "tests/render/drape_components.png");
+    const Edges edges = grid_edges(51);
+    ComponentColors colors;
+    SteadyColors steady;
+    std::vector<Rgb> raw_before, shown_before;
+    long raw_changes = 0, shown_changes = 0, frames = 0;
+    for (int frame = 0; frame < record.height; ++frame) {
+        std::vector<std::int32_t> component;
+        for (int p = 0; p < record.width; ++p)
+            component.push_back(record.at(p, frame)[0] + 256 * record.at(p, frame)[1] - 1);
+        const std::vector<Rgb> raw = colors.assign(component, edges), shown = steady.follow(raw);
+        if (frame > 0) {
+            ++frames;
+            for (std::size_t p = 0; p < raw.size(); ++p) {
+                raw_changes += !(raw[p] == raw_before[p]);
+                shown_changes += !(shown[p] == shown_before[p]);
+            }
+        }
+        raw_before = raw;
+        shown_before = shown;
+    }
+    const double all = static_cast<double>(frames) * record.width;
+    INFO("changes in " << 100 * raw_changes / all << "% of particle-frames, shown in " << 100 * shown_changes / all);
+    CHECK(shown_changes / all < 0.04);
+    CHECK(raw_changes / all < 0.16);
+}
+
+TEST_CASE("palette_a_change_that_holds_is_shown_two_frames_late_and_others_are_not") {
+    SteadyColors steady;
+    const Rgb a{1, 0, 0}, b{2, 0, 0};
+    CHECK(steady.follow({a, a}) == std::vector{a, a});
+    CHECK(steady.follow({b, b}) == std::vector{a, a});
+    CHECK(steady.follow({b, a}) == std::vector{a, a});
+    CHECK(steady.follow({b, b}) == std::vector{b, a});
+    CHECK(steady.follow({b, b}) == std::vector{b, a});
+    CHECK(steady.follow({b, b}) == std::vector{b, b});
 }

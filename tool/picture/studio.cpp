@@ -28,6 +28,7 @@ VideoSettings video_settings(const Scene& scene, const ClipOptions& options, Lay
     settings.codec = options.codec;
     settings.preset = options.preset;
     settings.crf = options.crf;
+    settings.thin_lines = layout != Layout::textured;
     settings.alpha = scene.look.transparent;
     return settings;
 }
@@ -122,7 +123,7 @@ Passage* Studio::take(const FrameSource& source) {
         const int frame = record->frame;
         if (frame > options_.last) return nullptr;
         // Colours follow components through time, so frames that are not drawn are looked at too.
-        const std::vector<Rgb>& colors = colors_.assign(record->component, edges_);
+        const std::vector<Rgb>& colors = steady_.follow(colors_.assign(record->component, edges_));
         if (frame < options_.first) {
             see(*record);
             continue;

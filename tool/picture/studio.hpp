@@ -84,6 +84,7 @@ private:
     std::vector<std::array<std::uint32_t, 2>> edges_;
     std::vector<char> reusable_;  // (views) pictures that lie there may be taken over
     ComponentColors colors_;
+    SteadyColors steady_;
     ClothState previous_;  // of the frame before, where pictures are blurred by motion
     bool has_previous_ = false;
     DrawScene drawn_;

@@ -7,10 +7,9 @@
 #include <stdexcept>
 
 #include "render/png.hpp"
-#include "sim/mesh/mesh_cloth.hpp"
 #include "sim/mesh/mesh_solid.hpp"
-#include "sim/model/surface.hpp"
 #include "sim/solids/motion.hpp"
+#include "tool/picture/display_mesh.hpp"
 #include "tool/picture/subdivision.hpp"
 #include "tool/picture/wire_colors.hpp"
 
@@ -52,76 +51,6 @@ SolidShape shape_of(Shape shape) {
     return SolidShape::sphere;
 }
 
-// The grid as triangles. A tube's seam column is doubled, so that uv runs on to the full circumference there.
-// `level`: of subdivision; the finer grid's points then stand at `first` in DrawFrame::positions.
-ClothMesh mesh_of(const ClothPatch& patch, const ClothAppearance& appearance, int level, std::size_t first) {
-    ClothMesh mesh;
-    mesh.appearance = appearance;
-    const int factor = 1 << level, columns = factor * patch.cells_u() + 1,
-              rows = factor * patch.cells_v() + 1;
-    const int points = patch.tube ? columns - 1 : columns;
-    const float du = static_cast<float>(patch.size[0] / std::max(columns - 1, 1));
-    const float dv = static_cast<float>(patch.size[1] / std::max(rows - 1, 1));
-    for (int j = 0; j < rows; ++j) {
-        for (int i = 0; i < columns; ++i) {
-            mesh.particle.push_back(level == 0 ? patch.at(i, j)
-                                               : static_cast<std::uint32_t>(first + j * points + i % points));
-            mesh.uv.push_back({du * static_cast<float>(i), dv * static_cast<float>(j)});
-        }
-    }
-    const auto vertex = [&](int i, int j) { return static_cast<std::uint32_t>(j * columns + i); };
-    for (int j = 0; j + 1 < rows; ++j) {
-        for (int i = 0; i + 1 < columns; ++i) {
-            const std::uint32_t a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i + 1, j + 1),
-                                d = vertex(i, j + 1);
-            // u along +x, v along +z: counter-clockwise as seen from the front (+y). Diagonals alternate, so
-            // that the shading has no grain.
-            if ((i + j) % 2 == 0) {
-                mesh.triangles.push_back({a, d, c});
-                mesh.triangles.push_back({a, c, b});
-            } else {
-                mesh.triangles.push_back({a, d, b});
-                mesh.triangles.push_back({b, d, c});
-            }
-        }
-    }
-    return mesh;
-}
-
-// Texture coordinates for a mesh that has none: its rest shape seen along the axis that it is thinnest on.
-// [m]
-Vec2 seen_flat(const MeshCloth& mesh, const Vec3& x) {
-    Eigen::Index thin = 0;
-    mesh.extent().minCoeff(&thin);
-    return thin == 0 ? Vec2(x.z(), x.y()) : thin == 1 ? Vec2(x.x(), x.z()) : Vec2(x.x(), x.y());
-}
-
-// A mesh as triangles. A vertex with several texture coordinates becomes a display vertex for each.
-ClothMesh mesh_of_faces(const ClothPatch& patch, const ClothAppearance& appearance) {
-    ClothMesh mesh;
-    mesh.appearance = appearance;
-    const ClothSurface surface = surface_of(patch);
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
-    const auto vertex = [&](const ClothSurface::Face& face, std::size_t k) {
-        const auto [found, is_new] =
-            known.try_emplace({face.vertex[k], face.uv[k]}, static_cast<std::uint32_t>(mesh.particle.size()));
-        if (is_new) {
-            const Vec2 uv = face.uv[k] == no_index
-                                ? seen_flat(*patch.mesh, patch.mesh->rest[face.vertex[k]])
-                                : Vec2(surface.uvs[face.uv[k]].cwiseProduct(surface.metres));
-            mesh.particle.push_back(patch.first + face.vertex[k]);
-            mesh.uv.push_back(uv.cast<float>());
-        }
-        return found->second;
-    };
-    for (const ClothSurface::Face& face : surface.faces) {
-        const std::uint32_t a = vertex(face, 0), b = vertex(face, 1), c = vertex(face, 2);
-        mesh.triangles.push_back({a, b, c});
-        if (face.corners == 4) mesh.triangles.push_back({a, c, vertex(face, 3)});
-    }
-    return mesh;
-}
-
 // A plane that faces straight up is drawn as the ground.
 bool is_ground(const Solid& solid) {
     return solid.shape == Shape::plane && solid.motion.empty() &&
@@ -153,18 +82,41 @@ float ground_height(const Scene& scene, const Placement& placement) {
     return static_cast<float>(std::min(lowest, highest - 1.1 * size) - 0.02);
 }
 
-void set_bounds(const Scene& scene, const Placement& placement, DrawScene& out) {
+// Where everything starts, where solids move to, and where pins take their cloths.
+void set_bounds(const Scene& scene, const ClothModel& model, const Placement& placement, DrawScene& out) {
     Vec3f low = placement.x.front().cast<float>(), high = low;
     const auto include = [&](const Vec3f& point) {
         low = low.cwiseMin(point);
         high = high.cwiseMax(point);
     };
     for (const Vec3& x : placement.x) include(x.cast<float>());
+    const auto along = [&](const Motion& motion, auto&& visit) {
+        visit(0.0);
+        if (motion.empty()) return;
+        for (int frame = 1; frame < scene.clip.frames(); ++frame) visit(frame_time(scene, frame));
+    };
     for (const Solid& solid : scene.solids) {
         if (solid.shape == Shape::plane) continue;
-        const Vec3f r = Vec3f::Constant(static_cast<float>(reach_of(solid))), c = solid.center.cast<float>();
-        include(c - r);
-        include(c + r);
+        const Vec3f r = Vec3f::Constant(static_cast<float>(reach_of(solid)));
+        along(solid.motion, [&](double t) {
+            const Vec3f c = solid_pose(solid, t).translation().cast<float>();
+            include(c - r);
+            include(c + r);
+        });
+    }
+    for (std::size_t c = 0; c < model.cloths.size(); ++c) {
+        const auto first = placement.x.begin() + static_cast<std::ptrdiff_t>(model.cloths[c].first);
+        Vec3f from = first->cast<float>(), to = from;
+        std::for_each_n(first, model.cloths[c].count(), [&](const Vec3& x) {
+            from = from.cwiseMin(x.cast<float>());
+            to = to.cwiseMax(x.cast<float>());
+        });
+        for (const Pin& pin : scene.cloths[c].pins)
+            along(pin.motion, [&](double t) {
+                const Vec3f moved = sample_motion(pin.motion, t).displacement.cast<float>();
+                include(from + moved);
+                include(to + moved);
+            });
     }
     // What falls or swings ends on the ground, or nearly.
     include({low.x(), out.ground_height, low.z()});
@@ -217,11 +169,11 @@ DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Pla
         }
         const ClothPatch& patch = model.cloths[c];
         const int level = display_level(scene.look, patch);
-        out.cloths.push_back(patch.grid() ? mesh_of(patch, appearance, level, first)
-                                          : mesh_of_faces(patch, appearance));
+        ClothMesh& mesh = out.cloths.emplace_back(patch.grid() ? grid_mesh(patch, level, first) : face_mesh(patch));
+        mesh.appearance = appearance;
         if (level > 0) first += FineGrid(patch, level).size();
         if (!appearance.texture.empty() && !textures.empty())
-            out.cloths.back().texture = read_png(textures / appearance.texture);
+            mesh.texture = read_png(textures / appearance.texture);
     }
     out.edges = drawn_edges(model, scene.look.show);
     out.transparent = scene.look.transparent;
@@ -246,7 +198,7 @@ DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Pla
     out.ground = parse_color(scene.look.ground);
     out.show_ground = scene.look.show_ground;
     out.ground_height = ground_height(scene, placement);
-    set_bounds(scene, placement, out);
+    set_bounds(scene, model, placement, out);
     return out;
 }
 

@@ -1,10 +1,10 @@
 #include "tool/plot/plot.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
-#include "render/palette.hpp"
 #include "tool/plot/canvas.hpp"
 #include "tool/plot/ticks.hpp"
 
@@ -29,17 +29,26 @@ struct Scale {
     }
 };
 
-// Yellow is too faint for lines on white.
+// Lines on white: Okabe & Ito's (2008), with a darker yellow, and three more.
+constexpr std::array<Rgb, 10> series_colors{{{230, 159, 0},
+                                             {86, 180, 233},
+                                             {0, 158, 115},
+                                             {176, 152, 0},
+                                             {0, 114, 178},
+                                             {213, 94, 0},
+                                             {204, 121, 167},
+                                             {170, 43, 0},
+                                             {170, 213, 170},
+                                             {140, 60, 255}}};
+
 Rgb series_color(const Plot& plot, std::size_t k) {
-    constexpr Rgb dark_yellow{176, 152, 0};
     // Blue, vermilion, green, pink …: those that differ most come first.
     constexpr std::size_t order[] = {4, 5, 2, 6, 0, 1, 9, 7, 3, 8};
     constexpr Rgb faint_grey{190, 194, 200};
     if (plot.series[k].faint) return faint_grey;
     const int asked = plot.series[k].color;
-    const std::size_t picked =
-        asked >= 0 ? static_cast<std::size_t>(asked) % component_palette.size() : order[k % std::size(order)];
-    return picked == 3 ? dark_yellow : component_palette[picked];
+    return series_colors[asked >= 0 ? static_cast<std::size_t>(asked) % series_colors.size()
+                                    : order[k % std::size(order)]];
 }
 
 Scale scale_of(const Plot& plot, bool along_x) {

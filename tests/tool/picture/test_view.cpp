@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/sim/mesh/mesh_scene.hpp"
 #include "tests/sim/scenes.hpp"
 #include "tool/picture/subdivision.hpp"
 #include "tool/picture/wire_colors.hpp"
@@ -138,4 +139,51 @@ TEST_CASE("wires_tell_the_splitting_strain_and_contact_of_their_springs") {
     show(Show::strain);
     CHECK(frame.edge_colors[0] == scale_color(1));
     CHECK(frame.edge_colors.back() == inactive_color);
+}
+
+TEST_CASE("a_picture_lies_on_a_mesh_by_its_texture_coordinates_and_once_on_a_grid") {
+    // Two triangles whose coordinates go down to -1 and up to 2, and a square of a metre with none.
+    const std::string placed = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt -1 -1\nvt 2 -1\nvt 2 0.5\nvt -1 0.5\n"
+                               "f 1/1 4/4 3/3\nf 1/1 3/3 2/2\n";
+    const std::string bare = "v -3 0 -3\nv -2 0 -3\nv -2 0 -2\nv -3 0 -2\nf 1 4 3\nf 1 3 2\n";
+    const auto corners = [](const Scene& scene) {
+        Placement placement;
+        const ClothModel model = build_model(scene, placement);
+        const ClothMesh mesh = make_draw_scene(scene, model, placement).cloths[0];
+        Vec2f low = Vec2f::Constant(9), high = -low;
+        for (const Vec2f& uv : mesh.uv) {
+            low = low.cwiseMin(uv.cwiseProduct(mesh.picture_scale));
+            high = high.cwiseMax(uv.cwiseProduct(mesh.picture_scale));
+        }
+        return std::array{low.x(), low.y(), high.x(), high.y()};
+    };
+    const std::string toml = "[cloth]\nmesh = \"mesh.obj\"\n";
+    const auto near = [](float value) { return Approx(value).margin(1e-5); };
+    const auto of_file = corners(testing::MeshScene(toml, placed).scene);
+    CHECK(of_file[0] == near(-1));
+    CHECK(of_file[1] == near(-1));
+    CHECK(of_file[2] == near(2));
+    CHECK(of_file[3] == near(0.5f));
+    for (const auto& whole : {corners(testing::MeshScene(toml, bare).scene), corners(testing::drape(7))}) {
+        CHECK(whole[0] == near(0));
+        CHECK(whole[1] == near(0));
+        CHECK(whole[2] == near(1));
+        CHECK(whole[3] == near(1));
+    }
+}
+
+TEST_CASE("the_bounds_of_a_clip_hold_where_pins_and_solids_go") {
+    Scene scene = testing::drape(7);
+    scene.clip.duration = 2;
+    scene.solids[0].motion = {{0, {0, 0, 0}, {0, 0, 0}}, {1, {0, 0, 4}, {0, 0, 0}}, {2, {0, 0, 0}, {0, 0, 0}}};
+    Pin pin;
+    pin.name = "u0v0";
+    pin.motion = {{0, {0, 0, 0}, {0, 0, 0}}, {2, {5, 0, 0}, {0, 0, 0}}};
+    scene.cloths[0].pins.push_back(pin);
+    Placement placement;
+    const ClothModel model = build_model(scene, placement);
+    const DrawScene drawn = make_draw_scene(scene, model, placement);
+    CHECK(drawn.bounds_high.x() == Approx(5.5).margin(0.05));
+    CHECK(drawn.bounds_high.z() == Approx(4.3).margin(0.05));
+    CHECK(drawn.bounds_low.x() == Approx(-0.5).margin(1e-6));
 }
