@@ -19,8 +19,8 @@ namespace {
 // pixels large then, and cost it as much each as blocks of pixels do.
 constexpr std::size_t fine_mesh = 60'000;
 
-// Particles of a cloth that cast its shadow: a software renderer takes more for every triangle than a pixel of shadow
-// is worth.
+// Particles of a cloth that cast its shadow: a software renderer takes more for every triangle than a pixel
+// of shadow is worth.
 constexpr std::size_t key_casters = 30'000, sky_casters = 1'600;
 
 /// `repeats`: beyond [0, 1]² the picture goes on; else its rim does not take in the opposite one.
@@ -103,8 +103,8 @@ GlProgram fabric_program(const ClothMesh& mesh, const ClothRenderer::Options& op
         "#define WEAVE {}\n#define PICTURE {}\n#define LIGHT_AT_VERTICES {}\n#define THREADS {}\n"
         "#define ENCODED {}\n#define SUPERSAMPLE {}\n",
         static_cast<int>(look.weave), mesh.texture.pixels.empty() ? 0 : 1,
-        options.software && mesh.triangles.size() > fine_mesh ? 1 : 0, threads ? 1 : 0, options.encoded ? 1 : 0,
-        options.supersample);
+        options.software && mesh.triangles.size() > fine_mesh ? 1 : 0, threads ? 1 : 0,
+        options.encoded ? 1 : 0, options.supersample);
     GlProgram program({"frame.glsl", "light.glsl", "sky.glsl", "fabric.glsl", "cloth.vert"},
                       {"frame.glsl", "quads.glsl", "light.glsl", "fabric.glsl", "weave.glsl", "color.glsl",
                        "written.glsl", "cloth.frag"},

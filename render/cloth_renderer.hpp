@@ -12,9 +12,9 @@ namespace unravel::render {
 class ClothRenderer {
 public:
     struct Options {
-        bool software;  ///< the renderer pays for each triangle and pixel: very fine meshes then get their
-                        ///< light at vertices and cast shadows by fewer triangles
-        bool encoded;   ///< shaders write sRGB
+        bool software;    ///< the renderer pays for each triangle and pixel: very fine meshes then get their
+                          ///< light at vertices and cast shadows by fewer triangles
+        bool encoded;     ///< shaders write sRGB
         int supersample;  ///< drawn pixels along a side of a finished one
     };
     ClothRenderer(const DrawScene& scene, const Options& options);

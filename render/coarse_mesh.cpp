@@ -41,8 +41,8 @@ EdgeLists edge_lists(std::span<const std::array<std::uint32_t, 3>> triangles, st
 
 constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
 
-/// Seeds so that no two are nearer than `apart` edges and every vertex is within that of one; `near` is the one that
-/// each vertex is nearest to.
+/// Seeds so that no two are nearer than `apart` edges and every vertex is within that of one; `near` is the
+/// one that each vertex is nearest to.
 std::vector<std::uint32_t> nearest_seeds(const EdgeLists& lists, int apart) {
     const std::size_t vertices = lists.border.size();
     std::vector<std::uint32_t> near(vertices, nobody), front, next;
@@ -87,7 +87,8 @@ std::vector<std::array<std::uint32_t, 3>> coarse_triangles(const ClothMesh& mesh
     for (const auto& [a, b, c] : mesh.triangles)
         triangles.push_back({number[mesh.particle[a]], number[mesh.particle[b]], number[mesh.particle[c]]});
 
-    // Within a number of edges r of a vertex of a triangle grid lie about 2 r² others; of two seeds' discs half.
+    // Within a number of edges r of a vertex of a triangle grid lie about 2 r² others; of two seeds' discs
+    // half.
     const int apart = static_cast<int>(
         std::lround(std::sqrt(static_cast<double>(shown_by.size()) / static_cast<double>(count))));
     if (apart < 2) return mesh.triangles;

@@ -40,7 +40,7 @@ struct ClothMesh {
     std::vector<std::array<std::uint32_t, 3>>
         triangles;  ///< vertex indices, counter-clockwise from the front
     ClothAppearance appearance;
-    Image texture;             ///< appearance.texture decoded, seen on the front; empty: the weave
+    Image texture;              ///< appearance.texture decoded, seen on the front; empty: the weave
     Vec2f picture_scale{1, 1};  ///< 1/m: uv times this places the picture as vt does: it spans [0, 1]², its
                                 ///< lowest row at v = 0, and repeats beyond
 };

@@ -48,8 +48,8 @@ Ground::Ground(const DrawScene& scene, int map_size, bool encoded)
       shown_({"frame.glsl", "light.glsl", "ground.vert"},
              {"frame.glsl", "light.glsl", "color.glsl", "written.glsl", "ground.frag"},
              fmt::format("#define GRID {}\n#define ENCODED {}\n", cells, encoded ? 1 : 0)),
-      quiet_({"frame.glsl", "ground_quiet.vert"}, {"frame.glsl", "color.glsl", "written.glsl", "ground_quiet.frag"},
-             "#define ENCODED 0\n") {
+      quiet_({"frame.glsl", "ground_quiet.vert"},
+             {"frame.glsl", "color.glsl", "written.glsl", "ground_quiet.frag"}, "#define ENCODED 0\n") {
     // Fine enough to hold the shadow of the sphere around the scene.
     const float radius = 0.5f * (scene.bounds_high - scene.bounds_low).norm();
     least_texel_ = 2.2f * radius / std::max(key_.y(), lowest_light) / static_cast<float>(map_size);
@@ -111,8 +111,8 @@ Ground::Region Ground::shadow_region(const DrawFrame& frame) const {
     return {low - margin, (high - low).max(-2 * margin) + 2 * margin};
 }
 
-/// Lays the key light's map around `shadow`, by whole texels so that what stands still keeps its place in it, and gives
-/// the part of it where the shadow is.
+/// Lays the key light's map around `shadow`, by whole texels so that what stands still keeps its place in it,
+/// and gives the part of it where the shadow is.
 PixelRect Ground::place(const Region& shadow) {
     constexpr float rim = 5;  // texels, for the map's softening
     const float sides = static_cast<float>(size_);

@@ -37,9 +37,9 @@ private:
 
     const DrawScene* scene_;
     Vec3f key_;
-    int size_;                      ///< of the key light's maps [px]
-    float least_texel_ = 0;         ///< of those maps [m]; larger by steps where shadows are wide
-    Region open_region_, region_;   ///< of this frame
+    int size_;                     ///< of the key light's maps [px]
+    float least_texel_ = 0;        ///< of those maps [m]; larger by steps where shadows are wide
+    Region open_region_, region_;  ///< of this frame
     GlProgram open_, visible_, soft_, shown_, quiet_;
     GlTexture rough_open_map_, open_map_, visible_map_, soft_map_;
     GlFramebuffer rough_open_target_, open_target_, visible_target_, soft_target_;

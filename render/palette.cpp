@@ -68,12 +68,14 @@ struct Heritage {
     int color = none;  ///< the label's, or what most particles of a group without one wore on their own
 };
 
-/// Of each group the number that most of its particles carry, of those that `counts`; none where there is none.
+/// Of each group the number that most of its particles carry, of those that `counts`; none where there is
+/// none.
 template <class Numbers, class Counts>
 std::vector<int> majority(const Groups& groups, const Numbers& numbers, Counts&& counts) {
     std::vector<std::array<std::int32_t, 2>> carried;
     for (std::size_t i = 0; i < groups.of.size(); ++i)
-        if (groups.of[i] != none && numbers[i] != none && counts(i)) carried.push_back({groups.of[i], numbers[i]});
+        if (groups.of[i] != none && numbers[i] != none && counts(i))
+            carried.push_back({groups.of[i], numbers[i]});
     std::vector<int> result(groups.count, none);
     std::vector<std::int32_t> most(groups.count, 0);
     for (const Tally& tallied : tally(std::move(carried)))
@@ -101,9 +103,8 @@ std::vector<Heritage> inherit(const Groups& groups, const ComponentColorState& s
         }
     // A label's particles agree on its colour unless some were away when it changed: most of the group's
     // decide.
-    const std::vector<int> worn = majority(groups, state.color, [&](std::size_t i) {
-        return state.label[i] == heritage[groups.of[i]].label;
-    });
+    const std::vector<int> worn = majority(
+        groups, state.color, [&](std::size_t i) { return state.label[i] == heritage[groups.of[i]].label; });
     const std::vector<int> own = majority(groups, state.own, [](std::size_t) { return true; });
     // What parts is not to look like what it parts from, though that be far away.
     const std::vector<int> last = majority(groups, state.color, [](std::size_t) { return true; });
@@ -154,7 +155,8 @@ const std::vector<Rgb>& ComponentColors::assign(std::span<const std::int32_t> co
     std::vector<int> color(groups.count, none);
     std::array<int, palette> used{};  // by how many groups so far
     const auto choose = [&](int g) {
-        std::array<int, palette> touching{}, alike{};  // edges to neighbours that wear the colour, or one as light
+        std::array<int, palette> touching{},
+            alike{};  // edges to neighbours that wear the colour, or one as light
         const auto [begin, end] = std::ranges::equal_range(neighbours, g, {}, &Tally::first);
         for (auto it = begin; it != end; ++it) {
             const int other = color[it->second];
@@ -165,14 +167,15 @@ const std::vector<Rgb>& ComponentColors::assign(std::span<const std::int32_t> co
         }
         int best = 0;
         for (int c = 1; c < palette; ++c)
-            if (std::tuple(touching[c], alike[c], used[c]) < std::tuple(touching[best], alike[best], used[best]))
+            if (std::tuple(touching[c], alike[c], used[c]) <
+                std::tuple(touching[best], alike[best], used[best]))
                 best = c;
         const int own = heritage[g].color;
         color[g] = own != none && touching[own] <= touching[best] ? own : best;
         ++used[color[g]];
     };
-    // Who goes on keeps its colour before those choose that part, and newcomers after them; among each, larger ones
-    // first.
+    // Who goes on keeps its colour before those choose that part, and newcomers after them; among each,
+    // larger ones first.
     const auto rank = [&](int g) {
         return heritage[g].label != none ? 0 : heritage[g].color != none ? 1 : 2;
     };
@@ -196,7 +199,8 @@ const std::vector<Rgb>& ComponentColors::assign(std::span<const std::int32_t> co
         state.label[i] = heritage[g].label;
         state.color[i] = static_cast<std::int8_t>(color[g]);
         // Those that have been taken in remember what they wore.
-        if (fresh[g] || state.own[i] == none || state.own[i] == heritage[g].color) state.own[i] = state.color[i];
+        if (fresh[g] || state.own[i] == none || state.own[i] == heritage[g].color)
+            state.own[i] = state.color[i];
         colors_[i] = component_palette[color[g]];
     }
     return colors_;

@@ -9,9 +9,10 @@
 
 namespace unravel::render {
 
-/// Colours of components, found by farthest-point search in OKLab under normal vision and full protan-, deuter- and
-/// tritanopia (Machado et al. 2009), away from white, grey and the dark background: any two are 0.12 apart for normal
-/// vision and protanopes, 0.15 for deuteranopes, 0.09 for tritanopes, most by lightness as well as by hue.
+/// Colours of components, found by farthest-point search in OKLab under normal vision and full protan-,
+/// deuter- and tritanopia (Machado et al. 2009), away from white, grey and the dark background: any two are
+/// 0.12 apart for normal vision and protanopes, 0.15 for deuteranopes, 0.09 for tritanopes, most by lightness
+/// as well as by hue.
 inline constexpr std::array<Rgb, 8> component_palette{{{255, 232, 104},
                                                        {19, 107, 133},
                                                        {226, 107, 235},
@@ -37,8 +38,8 @@ struct ComponentColorState {
 /// colour;
 /// - one that parts from another wears what most of its particles wore before they were taken into that one;
 /// - components joined by an edge get different colours, the larger one keeping its own (where a component
-/// has more neighbours than there are colours, the colour touching it least is taken), and new ones are lighter or darker
-/// than their neighbours where they can be;
+/// has more neighbours than there are colours, the colour touching it least is taken), and new ones are
+/// lighter or darker than their neighbours where they can be;
 /// - components of one particle share a calm grey, so that hundreds of them may come and go without a
 /// flicker, and
 ///   particles remember their colour while they are alone or held;
@@ -58,12 +59,13 @@ private:
     std::vector<Rgb> colors_;
 };
 
-/// Colours of a moving picture: what a particle wears changes once the new colour has held for three frames in a row,
-/// so that what sticks and slips, or parts and meets, from one frame to the next does not flicker. A change that stays
-/// is seen two frames late.
+/// Colours of a moving picture: what a particle wears changes once the new colour has held for three frames
+/// in a row, so that what sticks and slips, or parts and meets, from one frame to the next does not flicker.
+/// A change that stays is seen two frames late.
 class SteadyColors {
 public:
-    /// `colors` (particles) of the next frame; the first is shown as it is. The result holds until the next call.
+    /// `colors` (particles) of the next frame; the first is shown as it is. The result holds until the next
+    /// call.
     const std::vector<Rgb>& follow(const std::vector<Rgb>& colors);
 
 private:

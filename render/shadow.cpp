@@ -10,8 +10,8 @@ namespace unravel::render {
 
 namespace {
 
-/// Parallel projection from `direction` that maps the sphere (centre, radius) to clip space, `texels` along a side
-/// that lie where they lie for any other centre.
+/// Parallel projection from `direction` that maps the sphere (centre, radius) to clip space, `texels` along a
+/// side that lie where they lie for any other centre.
 Eigen::Matrix4f parallel(const Vec3f& centre, float radius, const Vec3f& direction, int texels) {
     const Eigen::Matrix4f turn = look_at(direction, Vec3f::Zero(), Vec3f(0, 1, 0));
     const float texel = 2 * radius / static_cast<float>(texels);
@@ -88,7 +88,8 @@ void ShadowMaps::draw(const DrawCasters& draw_casters) const {
     glDepthFunc(GL_LESS);
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
-    // Depths stay as they are: an offset by slope would put what stands edge-on to the light behind everything.
+    // Depths stay as they are: an offset by slope would put what stands edge-on to the light behind
+    // everything.
     glDisable(GL_CULL_FACE);   // a cloth has no inside
     glEnable(GL_DEPTH_CLAMP);  // what has moved out of the scene's bounds casts all the same
     glBindFramebuffer(GL_FRAMEBUFFER, key_target_);

@@ -20,8 +20,9 @@ public:
 
     ShadowMaps(const DrawScene& scene, int key_size);
 
-    /// Aims the maps at the sphere around a frame's box of casters [m], wherever in the clip they have come to. Its
-    /// radius grows in steps and its centre by whole texels: shadows of what stands still do not crawl.
+    /// Aims the maps at the sphere around a frame's box of casters [m], wherever in the clip they have come
+    /// to. Its radius grows in steps and its centre by whole texels: shadows of what stands still do not
+    /// crawl.
     void aim(const Vec3f& low, const Vec3f& high);
     /// Fills in the parts of the block that belong to shadows as they are aimed.
     void describe(FrameBlock& block) const;

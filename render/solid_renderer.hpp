@@ -18,7 +18,8 @@ public:
     /// Uploads the frame's positions of meshes that deform. Before anything else of the frame is drawn.
     void update_shapes(const DrawFrame& frame);
 
-    /// How far planes go from the scene's centre in this frame [m]: 2.5 times the scene's diagonal, or further.
+    /// How far planes go from the scene's centre in this frame [m]: 2.5 times the scene's diagonal, or
+    /// further.
     float set_reach(float at_least) { return reach_now_ = std::max(reach_, at_least); }
 
     /// What casts shadows, by the program in use, whose matrix `transform` is set for each. `coarse`: for
@@ -50,7 +51,7 @@ private:
         Mesh fine, coarse;
         int solid = 0;
         bool fades = false;
-        Vec3f albedo;             ///< linear
+        Vec3f albedo;              ///< linear
         CreasedMesh creased = {};  ///< of a mesh that deforms
     };
     Eigen::Matrix4f pose(const Part& part, const DrawFrame& frame) const;

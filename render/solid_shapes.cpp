@@ -128,7 +128,7 @@ CreasedMesh crease(std::span<const std::array<std::uint32_t, 3>> triangles,
         return corner;
     };
     struct Side {
-        std::uint32_t low, high;  // vertices
+        std::uint32_t low, high;        // vertices
         std::uint32_t at_low, at_high;  // corners
     };
     std::vector<Side> sides;

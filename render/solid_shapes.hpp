@@ -17,14 +17,13 @@ struct Tessellation {
 /// `detail` 1 is for the eye; less gives coarser, inscribed shapes.
 Tessellation tessellate(const SolidMesh& solid, float detail = 1);
 
-/// A mesh's vertices for drawing: one for each smooth patch around a vertex of the mesh. Patches end at edges that bend
-/// by more than 40 degrees, and where the surface does.
+/// A mesh's vertices for drawing: one for each smooth patch around a vertex of the mesh. Patches end at edges
+/// that bend by more than 40 degrees, and where the surface does.
 struct CreasedMesh {
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< vertices for drawing
     std::vector<std::uint32_t> source;                    ///< (vertices for drawing) vertex of the mesh
 };
-CreasedMesh crease(std::span<const std::array<std::uint32_t, 3>> triangles,
-                   std::span<const Vec3f> positions);
+CreasedMesh crease(std::span<const std::array<std::uint32_t, 3>> triangles, std::span<const Vec3f> positions);
 
 /// It with the mesh's vertices at `positions`; normals are smooth over each patch, weighted by area.
 Tessellation tessellate_mesh(const CreasedMesh& mesh, std::span<const Vec3f> positions);

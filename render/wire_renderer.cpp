@@ -6,7 +6,8 @@ namespace unravel::render {
 
 namespace {
 
-constexpr float sparse_gap = 3.5f;  // px between particles above which they are dots, in full from twice that on
+constexpr float sparse_gap =
+    3.5f;  // px between particles above which they are dots, in full from twice that on
 constexpr float invisible_gap = 1.2f;  // px; wire.vert lets springs vanish as they come near it
 
 }  // namespace

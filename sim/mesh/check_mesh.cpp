@@ -14,7 +14,8 @@ public:
     MeshCheck(const PolygonMesh& mesh, MeshMessages& said) : mesh_(mesh), said_(said) {}
 
     bool has_faces() {
-        if (mesh_.faces.empty()) said_.fault(0, "the mesh has no faces", "write triangles or quads (f lines)");
+        if (mesh_.faces.empty())
+            said_.fault(0, "the mesh has no faces", "write triangles or quads (f lines)");
         return !mesh_.faces.empty();
     }
 
@@ -39,8 +40,9 @@ public:
     void closed() {
         const auto loops = border_loops(mesh_.faces);
         if (loops.empty()) return;
-        said_.fault(0, fmt::format("the body is open: {}", holes_text(loops)),
-                    "mesh_holes = \"cap\" closes them, mesh_shell = 0.01 takes the surface as a shell 1 cm thick");
+        said_.fault(
+            0, fmt::format("the body is open: {}", holes_text(loops)),
+            "mesh_holes = \"cap\" closes them, mesh_shell = 0.01 takes the surface as a shell 1 cm thick");
     }
 
 private:

@@ -111,8 +111,7 @@ private:
         const Piece triangle = piece_at(a, 3);
         const double worst = skew(triangle, 3);
         // Any quad goes before any triangle.
-        if (worst < not_allowed && !holds_another(triangle, 3))
-            cost_[a].triangle = std::numbers::pi + worst;
+        if (worst < not_allowed && !holds_another(triangle, 3)) cost_[a].triangle = std::numbers::pi + worst;
     }
 
     std::uint32_t best_of(std::uint32_t any) const {
@@ -161,7 +160,8 @@ private:
 bool is_convex(std::span<const Vec3> corners) {
     const std::vector<Vec2> at = flattened(corners);
     for (std::size_t k = 0; k < at.size(); ++k) {
-        const Vec2 in = at[(k + 1) % at.size()] - at[k], out = at[(k + 2) % at.size()] - at[(k + 1) % at.size()];
+        const Vec2 in = at[(k + 1) % at.size()] - at[k],
+                   out = at[(k + 2) % at.size()] - at[(k + 1) % at.size()];
         if (cross(in, out) < -1e-3 * in.norm() * out.norm()) return false;
     }
     return true;

@@ -38,8 +38,7 @@ void sample_between(const Figure::Channel& channel, std::size_t k, double s, std
     const double *a = &channel.values[3 * k * width], *b = a + 3 * width;
     const double h01 = s * s * (3 - 2 * s), h10 = s * (1 - s) * (1 - s), h11 = s * s * (s - 1);
     for (std::size_t c = 0; c < width; ++c)
-        out[c] = (1 - h01) * a[width + c] + h01 * b[width + c] +
-                 span * (h10 * a[2 * width + c] + h11 * b[c]);
+        out[c] = (1 - h01) * a[width + c] + h01 * b[width + c] + span * (h10 * a[2 * width + c] + h11 * b[c]);
 }
 
 }  // namespace
@@ -109,7 +108,8 @@ void Figure::pose(double t, std::vector<Vec3>& out) const {
         for (std::uint32_t v = 0; v < piece.count; ++v) {
             Vec3 moved(0, 0, 0);
             for (std::uint32_t i = piece.first_influence[v]; i < piece.first_influence[v + 1]; ++i)
-                moved += piece.influences[i].weight * (joints[piece.influences[i].joint] * out[piece.first + v]);
+                moved +=
+                    piece.influences[i].weight * (joints[piece.influences[i].joint] * out[piece.first + v]);
             out[piece.first + v] = moved;
         }
     }

@@ -28,15 +28,15 @@ struct Figure {
         double weight = 0;        ///< all of a vertex sum to 1
     };
     struct Skin {
-        std::vector<std::uint32_t> joints;        ///< nodes
+        std::vector<std::uint32_t> joints;          ///< nodes
         std::vector<Eigen::Affine3d> inverse_bind;  ///< (joints) from the mesh's frame to the joint's
     };
     /// The vertices of a mesh at a node.
     struct Piece {
         std::uint32_t node = 0, skin = no_node;
-        std::uint32_t first = 0, count = 0;                      ///< its vertices
-        std::vector<std::vector<Eigen::Vector3f>> targets;       ///< (targets, count) what each adds [m]
-        std::vector<std::uint32_t> first_influence;              ///< (count + 1) into `influences`
+        std::uint32_t first = 0, count = 0;                 ///< its vertices
+        std::vector<std::vector<Eigen::Vector3f>> targets;  ///< (targets, count) what each adds [m]
+        std::vector<std::uint32_t> first_influence;         ///< (count + 1) into `influences`
         std::vector<Influence> influences;
     };
     enum class Path : std::uint8_t { translation, rotation, scale, weights };

@@ -41,8 +41,8 @@ public:
             said_.notes.push_back(fmt::format("the scene names no animation, so none is played; it has {}",
                                               gltf_animations(model_)));
         if (passed_over_ > 0)
-            said_.notes.push_back(
-                fmt::format("{} no triangles: passed over", counted(passed_over_, "primitive has", "primitives have")));
+            said_.notes.push_back(fmt::format("{} no triangles: passed over",
+                                              counted(passed_over_, "primitive has", "primitives have")));
         figure.pose(animation.empty() ? 0 : first_key(), mesh.positions);
         for (const Vec3& x : mesh.positions) {
             if (!x.allFinite() || x.cwiseAbs().maxCoeff() > largest_coordinate)
@@ -89,7 +89,8 @@ private:
         if (from.translation.size() == 3) node.translation = Vec3(from.translation.data());
         if (from.scale.size() == 3) node.scale = Vec3(from.scale.data());
         if (from.rotation.size() == 4) {
-            const Eigen::Quaterniond q(from.rotation[3], from.rotation[0], from.rotation[1], from.rotation[2]);
+            const Eigen::Quaterniond q(from.rotation[3], from.rotation[0], from.rotation[1],
+                                       from.rotation[2]);
             if (q.norm() > 0) node.rotation = q.normalized();
         }
         if (from.matrix.size() == 16) {
@@ -114,9 +115,11 @@ private:
             PolygonMesh::Part part;
             for (const std::string& name : {node.name, from.name})
                 if (!name.empty()) part.objects.push_back(name);
-            if (primitive.material >= 0 && !gltf_item(model_.materials, primitive.material, "material").name.empty())
+            if (primitive.material >= 0 &&
+                !gltf_item(model_.materials, primitive.material, "material").name.empty())
                 part.groups.push_back(model_.materials[static_cast<std::size_t>(primitive.material)].name);
-            if (mesh.parts.size() > max_list) throw GltfError(fmt::format("more than {} primitives", max_list));
+            if (mesh.parts.size() > max_list)
+                throw GltfError(fmt::format("more than {} primitives", max_list));
             mesh.parts.push_back(std::move(part));
             read_primitive(primitive, mode, position->second, number, node.skin);
         }
@@ -155,7 +158,8 @@ private:
             }
             if (influences == 0) throw GltfError("a mesh has a skin, and no joints and weights");
         }
-        const std::vector<std::uint32_t> same = number_alike(count, {&x, &joints, &weights}, targets, influences);
+        const std::vector<std::uint32_t> same =
+            number_alike(count, {&x, &joints, &weights}, targets, influences);
         // What each vertex of the file became, and the vertices that stay.
         std::vector<std::uint32_t> vertex(count), kept;
         for (std::uint32_t v = 0; v < count; ++v) {
@@ -181,7 +185,8 @@ private:
 
     std::vector<double> attribute(int accessor, std::size_t width, std::size_t count) const {
         if (gltf_count(model_, accessor) != count)
-            throw GltfError(fmt::format("accessor {} has not as many elements as its primitive has vertices", accessor));
+            throw GltfError(
+                fmt::format("accessor {} has not as many elements as its primitive has vertices", accessor));
         return gltf_numbers(model_, accessor, width, count);
     }
 
@@ -206,7 +211,8 @@ private:
             if (const int order = compare_run(*parts[0], 3, a, b)) return order;
             for (std::size_t set = 0; set < influences / 4; ++set) {
                 for (const std::size_t which : {1, 2}) {
-                    if (const int order = compare_run(*parts[which], 4, set * count + a, set * count + b)) return order;
+                    if (const int order = compare_run(*parts[which], 4, set * count + a, set * count + b))
+                        return order;
                 }
             }
             for (const std::vector<double>& target : targets) {
@@ -224,8 +230,8 @@ private:
     }
 
     void take_influences(Figure::Piece& piece, const std::vector<std::uint32_t>& kept,
-                         const std::vector<double>& joints, const std::vector<double>& weights, std::size_t count,
-                         std::size_t influences) const {
+                         const std::vector<double>& joints, const std::vector<double>& weights,
+                         std::size_t count, std::size_t influences) const {
         const std::size_t there = figure.skins[piece.skin].joints.size();
         for (const std::uint32_t v : kept) {
             piece.first_influence.push_back(static_cast<std::uint32_t>(piece.influences.size()));
@@ -254,7 +260,8 @@ private:
         for (const int joint : from.joints) {
             gltf_item(model_.nodes, joint, "node");
             const std::uint32_t node = number_[static_cast<std::size_t>(joint)];
-            if (node == Figure::no_node) throw GltfError(fmt::format("joint {} is no node of the scene", joint));
+            if (node == Figure::no_node)
+                throw GltfError(fmt::format("joint {} is no node of the scene", joint));
             skin.joints.push_back(node);
         }
         skin.inverse_bind.assign(skin.joints.size(), Eigen::Affine3d::Identity());
@@ -284,7 +291,8 @@ private:
         std::iota(index.begin(), index.end(), 0u);
         if (primitive.indices >= 0) {
             index.clear();
-            for (const double value : gltf_numbers(model_, primitive.indices, 1, 6 * std::size_t{max_particles})) {
+            for (const double value :
+                 gltf_numbers(model_, primitive.indices, 1, 6 * std::size_t{max_particles})) {
                 if (!(value >= 0 && value < static_cast<double>(count)))
                     throw GltfError(fmt::format("a triangle names vertex {} of {}", value, count));
                 index.push_back(static_cast<std::uint32_t>(value));

@@ -63,9 +63,9 @@ void add_gltf_animation(const tinygltf::Model& model, const std::string& name,
     const auto found = std::find_if(model.animations.begin(), model.animations.end(),
                                     [&](const tinygltf::Animation& one) { return one.name == name; });
     if (found == model.animations.end())
-        throw GltfError(model.animations.empty()
-                            ? "it has no animations"
-                            : fmt::format("it has no animation \"{}\", but {}", name, gltf_animations(model)));
+        throw GltfError(model.animations.empty() ? "it has no animations"
+                                                 : fmt::format("it has no animation \"{}\", but {}", name,
+                                                               gltf_animations(model)));
     for (const tinygltf::AnimationChannel& channel : found->channels) {
         if (channel.target_node < 0) continue;  // of an extension
         gltf_item(model.nodes, channel.target_node, "node");

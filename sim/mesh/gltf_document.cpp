@@ -27,7 +27,8 @@ void require_frame(std::span<const std::uint8_t> bytes) {
 void require_extensions(const tinygltf::Model& model) {
     for (const std::string& name : model.extensionsRequired) {
         if (name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
-            name.starts_with("EXT_texture_") || name == "KHR_mesh_quantization" || name == "KHR_lights_punctual")
+            name.starts_with("EXT_texture_") || name == "KHR_mesh_quantization" ||
+            name == "KHR_lights_punctual")
             continue;
         throw GltfError(fmt::format("it needs the extension {}, which is not read", name.substr(0, 60)));
     }
@@ -41,13 +42,11 @@ tinygltf::Model parse_gltf_document(std::span<const std::uint8_t> bytes) {
     loader.SetImageLoader([](tinygltf::Image*, const int, std::string*, std::string*, int, int,
                              const unsigned char*, int, void*) { return true; },
                           nullptr);
-    loader.SetFsCallbacks({[](const std::string&, void*) { return false; },
-                           [](const std::string& path, void*) { return path; },
-                           [](std::vector<unsigned char>*, std::string*, const std::string&, void*) { return false; },
-                           [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
-                               return false;
-                           },
-                           nullptr});
+    loader.SetFsCallbacks(
+        {[](const std::string&, void*) { return false; }, [](const std::string& path, void*) { return path; },
+         [](std::vector<unsigned char>*, std::string*, const std::string&, void*) { return false; },
+         [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; },
+         nullptr});
     tinygltf::Model model;
     std::string error, warning;
     bool read = false;
@@ -56,8 +55,8 @@ tinygltf::Model parse_gltf_document(std::span<const std::uint8_t> bytes) {
         require_frame(bytes);
         read = loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), size);
     } else {
-        read = loader.LoadASCIIFromString(&model, &error, &warning, reinterpret_cast<const char*>(bytes.data()),
-                                          size, "");
+        read = loader.LoadASCIIFromString(&model, &error, &warning,
+                                          reinterpret_cast<const char*>(bytes.data()), size, "");
     }
     std::replace(error.begin(), error.end(), '\n', ' ');
     if (error.find("File not found") != std::string::npos)

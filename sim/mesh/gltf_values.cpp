@@ -18,7 +18,8 @@ double as_number(const unsigned char* from, bool normalised) {
     std::memcpy(&value, from, sizeof value);
     if constexpr (!std::is_floating_point_v<T>) {
         if (normalised)
-            return std::max(static_cast<double>(value) / static_cast<double>(std::numeric_limits<T>::max()), -1.0);
+            return std::max(static_cast<double>(value) / static_cast<double>(std::numeric_limits<T>::max()),
+                            -1.0);
     }
     return static_cast<double>(value);
 }
@@ -57,8 +58,9 @@ void read_view(const tinygltf::Model& model, int view, std::size_t offset, std::
     if (stride == 0) stride = from.byteStride == 0 ? element : from.byteStride;
     if (from.byteOffset > data.size() || from.byteLength > data.size() - from.byteOffset ||
         stride > from.byteLength || offset > from.byteLength ||
-        (count > 0 && (element > from.byteLength - offset ||
-                       (count - 1) > (from.byteLength - offset - element) / std::max<std::size_t>(stride, 1))))
+        (count > 0 &&
+         (element > from.byteLength - offset ||
+          (count - 1) > (from.byteLength - offset - element) / std::max<std::size_t>(stride, 1))))
         throw GltfError("an accessor reaches beyond its data");
     out.reserve(count * width);
     for (std::size_t k = 0; k < count; ++k) {
@@ -82,7 +84,8 @@ std::vector<double> gltf_numbers(const tinygltf::Model& model, int accessor, std
     const tinygltf::Accessor& from = model.accessors[static_cast<std::size_t>(accessor)];
     const std::int32_t components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(from.type));
     if (components <= 0 || (width != 0 && static_cast<std::size_t>(components) != width))
-        throw GltfError(fmt::format("accessor {} has {} numbers per element, not {}", accessor, components, width));
+        throw GltfError(
+            fmt::format("accessor {} has {} numbers per element, not {}", accessor, components, width));
     width = static_cast<std::size_t>(components);
     std::vector<double> out;
     // Without a view it is zeros, which a sparse one then fills.
@@ -96,19 +99,23 @@ std::vector<double> gltf_numbers(const tinygltf::Model& model, int accessor, std
             throw GltfError(fmt::format("accessor {} replaces more elements than it has", accessor));
         const auto count = static_cast<std::size_t>(from.sparse.count);
         std::vector<double> index, value;
-        read_view(model, from.sparse.indices.bufferView, static_cast<std::size_t>(from.sparse.indices.byteOffset),
-                  0, from.sparse.indices.componentType, false, 1, count, index);
-        read_view(model, from.sparse.values.bufferView, static_cast<std::size_t>(from.sparse.values.byteOffset), 0,
-                  from.componentType, from.normalized, width, count, value);
+        read_view(model, from.sparse.indices.bufferView,
+                  static_cast<std::size_t>(from.sparse.indices.byteOffset), 0,
+                  from.sparse.indices.componentType, false, 1, count, index);
+        read_view(model, from.sparse.values.bufferView,
+                  static_cast<std::size_t>(from.sparse.values.byteOffset), 0, from.componentType,
+                  from.normalized, width, count, value);
         for (std::size_t k = 0; k < count; ++k) {
             if (!(index[k] >= 0 && index[k] < static_cast<double>(from.count)))
                 throw GltfError(fmt::format("accessor {} replaces element {}", accessor, index[k]));
-            std::copy_n(value.begin() + static_cast<std::ptrdiff_t>(k * width), width,
-                        out.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(index[k]) * width));
+            std::copy_n(
+                value.begin() + static_cast<std::ptrdiff_t>(k * width), width,
+                out.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(index[k]) * width));
         }
     }
     for (const double value : out) {
-        if (!std::isfinite(value)) throw GltfError(fmt::format("a number of accessor {} is not finite", accessor));
+        if (!std::isfinite(value))
+            throw GltfError(fmt::format("a number of accessor {} is not finite", accessor));
     }
     return out;
 }

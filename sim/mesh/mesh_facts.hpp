@@ -11,7 +11,7 @@ namespace unravel::sim {
 struct MeshFacts {
     Vec3 extent{0, 0, 0};  ///< m, edge lengths of the box around it
     std::size_t vertices = 0;
-    double spacing = 0;                              ///< m, middle value of the lengths of its edges
+    double spacing = 0;                               ///< m, middle value of the lengths of its edges
     std::vector<std::vector<std::uint32_t>> borders;  ///< border_loops(); of a body: none
 };
 

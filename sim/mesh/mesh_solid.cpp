@@ -62,7 +62,8 @@ void finish_solid(MeshSolid& body, PolygonMesh mesh, const MeshFile& file, const
     body.triangles = triangles_of(body.rest, mesh.faces);
     const std::vector<Triangle> surface = body.triangles;
     if (file.shell > 0) body.triangles = shell_triangles(surface, body.rest.size());
-    const auto place = [surface, scale = file.scale, up = file.up, shell = file.shell](std::vector<Vec3>& shape) {
+    const auto place = [surface, scale = file.scale, up = file.up,
+                        shell = file.shell](std::vector<Vec3>& shape) {
         for (Vec3& x : shape) x = from_file(x, scale, up);
         if (shell > 0) thicken(surface, shell, shape);
     };

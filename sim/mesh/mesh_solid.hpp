@@ -23,9 +23,9 @@ struct MeshSolid {
     std::function<void(double t, std::vector<Vec3>& out)> pose;
     double fps = 30, start = 0;             ///< as MeshFrames says
     double period = 0;                      ///< s, after which it begins again; 0: it ends
-    MeshTree tree;                           ///< over `rest`
-    double reach = 0;                        ///< m, from its origin to its farthest vertex, ever
-    std::vector<std::string> sample_files;   ///< in the scene's folder
+    MeshTree tree;                          ///< over `rest`
+    double reach = 0;                       ///< m, from its origin to its farthest vertex, ever
+    std::vector<std::string> sample_files;  ///< in the scene's folder
 
     bool deforms() const { return !samples.empty() || pose; }
     /// Where the vertices are at time t: between samples on straight lines, or as posed. (vertices) [m]

@@ -319,12 +319,14 @@ private:
         const int base = element.kind == Kind::stitch ? 0 : 1;
         for (const Corner& corner : corners) {
             if (corner.vertex >= mesh_.positions.size()) {
-                said_.fault(element.line, fmt::format("there is no vertex {}", std::size_t{corner.vertex} + base),
+                said_.fault(element.line,
+                            fmt::format("there is no vertex {}", std::size_t{corner.vertex} + base),
                             fmt::format("the file has {}", mesh_.positions.size()));
                 return false;
             }
             if (corner.uv != no_index && corner.uv >= mesh_.uvs.size()) {
-                said_.fault(element.line, fmt::format("there is no texture vertex {}", std::size_t{corner.uv} + 1),
+                said_.fault(element.line,
+                            fmt::format("there is no texture vertex {}", std::size_t{corner.uv} + 1),
                             fmt::format("the file has {}", mesh_.uvs.size()));
                 return false;
             }

@@ -102,8 +102,8 @@ void turn_alike(PolygonMesh& mesh, MeshMessages& said) {
         }
     }
     if (turned > 0)
-        said.notes.push_back(
-            fmt::format("{} the other way than the neighbours: turned", counted(turned, "face looks", "faces look")));
+        said.notes.push_back(fmt::format("{} the other way than the neighbours: turned",
+                                         counted(turned, "face looks", "faces look")));
 }
 
 void turn_outward(PolygonMesh& mesh, MeshMessages& said) {
@@ -124,9 +124,10 @@ void turn_outward(PolygonMesh& mesh, MeshMessages& said) {
     std::vector<char> inward(all.size(), 0);
     std::size_t count = 0;
     for (std::size_t p = 0; p < all.size(); ++p) {
-        inward[p] = all[p].volume < 0 && (all.size() > most_nested || std::none_of(all.begin(), all.end(), [&](const Enclosure& other) {
-                        return all[p].inside(other);
-                    }));
+        inward[p] = all[p].volume < 0 && (all.size() > most_nested ||
+                                          std::none_of(all.begin(), all.end(), [&](const Enclosure& other) {
+                                              return all[p].inside(other);
+                                          }));
         count += static_cast<std::size_t>(inward[p]);
     }
     if (count == 0) return;

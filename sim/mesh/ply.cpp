@@ -23,8 +23,8 @@ static_assert(std::endian::native == std::endian::little, "other machines turn t
 enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
 std::optional<PlyType> type_named(std::string_view name) {
-    constexpr std::string_view names[][2] = {{"char", "int8"},   {"uchar", "uint8"}, {"short", "int16"},
-                                             {"ushort", "uint16"}, {"int", "int32"}, {"uint", "uint32"},
+    constexpr std::string_view names[][2] = {{"char", "int8"},     {"uchar", "uint8"},   {"short", "int16"},
+                                             {"ushort", "uint16"}, {"int", "int32"},     {"uint", "uint32"},
                                              {"float", "float32"}, {"double", "float64"}};
     for (std::size_t k = 0; k < std::size(names); ++k) {
         if (name == names[k][0] || name == names[k][1]) return static_cast<PlyType>(k);
@@ -177,7 +177,8 @@ private:
                 if (list) words >> second >> first;
                 words >> property.name;
                 const auto type = type_named(first), count = type_named(second);
-                if (!type || (list && !count)) return wrong("a property in its header has no type that there is");
+                if (!type || (list && !count))
+                    return wrong("a property in its header has no type that there is");
                 property.type = *type;
                 if (list) property.count = count;
                 elements_.back().properties.push_back(std::move(property));
@@ -262,7 +263,8 @@ private:
             vertex.push_back(static_cast<std::uint32_t>(corner));
             uv.push_back(textured ? vertex.back() : no_index);
         }
-        cut_ += add_polygon(mesh_, std::move(vertex), std::move(uv), 0, static_cast<std::uint32_t>(number), 0);
+        cut_ +=
+            add_polygon(mesh_, std::move(vertex), std::move(uv), 0, static_cast<std::uint32_t>(number), 0);
         return true;
     }
 

@@ -32,9 +32,9 @@ PolygonMesh parse_mesh(const std::string& name, std::span<const std::uint8_t> by
     if (ending == ".obj") return parse_obj(text, said);
     if (ending == ".ply") return parse_ply(bytes, said);
     if (ending == ".stl") return parse_stl(bytes, said);
-    said.fault(0,
-               ending.empty() ? "its name has no ending" : fmt::format("no mesh is read from '{}' files", ending),
-               "export it as OBJ, PLY, STL or GLB");
+    said.fault(
+        0, ending.empty() ? "its name has no ending" : fmt::format("no mesh is read from '{}' files", ending),
+        "export it as OBJ, PLY, STL or GLB");
     return {};
 }
 

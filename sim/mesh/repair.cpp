@@ -49,8 +49,8 @@ void keep_faces(PolygonMesh& mesh, const std::vector<char>& kept) {
     if (!mesh.face_line.empty()) mesh.face_line.resize(to);
 }
 
-// Vertices give way to those that stand for them, by number (themselves: they stay; no_index: they go, with the
-// seams that end there). Those that stay keep their order.
+// Vertices give way to those that stand for them, by number (themselves: they stay; no_index: they go, with
+// the seams that end there). Those that stay keep their order.
 void keep_vertices(PolygonMesh& mesh, const std::vector<std::uint32_t>& stands) {
     std::vector<std::uint32_t> number(stands.size(), no_index);
     std::uint32_t to = 0;

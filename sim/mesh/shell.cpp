@@ -34,7 +34,8 @@ void thicken(std::span<const Triangle> surface, double thickness, std::vector<Ve
     x.resize(2 * n);
     for (std::size_t v = 0; v < n; ++v) {
         const double length = normal[v].norm();
-        const Vec3 out = length > 0 ? Vec3(0.5 * thickness / length * normal[v]) : Vec3(0, 0.5 * thickness, 0);
+        const Vec3 out =
+            length > 0 ? Vec3(0.5 * thickness / length * normal[v]) : Vec3(0, 0.5 * thickness, 0);
         x[n + v] = x[v] - out;
         x[v] += out;
     }

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "sim/scene/math.hpp"
 #include "sim/mesh/polygon_mesh.hpp"
+#include "sim/scene/math.hpp"
 
 namespace unravel::sim {
 

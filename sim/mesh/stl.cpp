@@ -45,7 +45,8 @@ std::string text_corners(std::string_view text, std::vector<Vec3>& out) {
             std::string_view digits = word();
             if (digits.starts_with('+')) digits.remove_prefix(1);
             const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-            if (digits.empty() || end != digits.data() + digits.size() || error == std::errc::invalid_argument)
+            if (digits.empty() || end != digits.data() + digits.size() ||
+                error == std::errc::invalid_argument)
                 return fmt::format("corner {} has no three numbers", out.size() + 1);
             if (error == std::errc::result_out_of_range) value = 0;
         }
@@ -119,7 +120,8 @@ PolygonMesh parse_stl(std::span<const std::uint8_t> bytes, MeshMessages& said) {
         mesh.add_face(face, 0, t, 0);
     }
     if (mesh.positions.size() > std::size_t{max_particles})
-        said.fault(0, fmt::format("more than {} vertices", max_particles), "that is more than a run can hold");
+        said.fault(0, fmt::format("more than {} vertices", max_particles),
+                   "that is more than a run can hold");
     finish_numbering(mesh);
     return mesh;
 }

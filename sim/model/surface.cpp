@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "sim/mesh/repair.hpp"
 #include "sim/mesh/mesh_cloth.hpp"
+#include "sim/mesh/repair.hpp"
 
 namespace unravel::sim {
 

@@ -113,7 +113,8 @@ struct MeshFile {
     std::string object, group;  ///< the part of it that is meant; empty: all
     double scale = 1;           ///< metres per unit of the file
     UpAxis up = UpAxis::y;
-    std::optional<bool> merge;  ///< vertices in one place are one; absent: a body's are, a cloth's are a problem
+    std::optional<bool>
+        merge;  ///< vertices in one place are one; absent: a body's are, a cloth's are a problem
     MeshHoles holes = MeshHoles::small;  ///< of bodies
     double shell = 0;                    ///< m, of a body that is a surface with two sides; 0: it is solid
     std::string hash;  ///< of the file's content, in a run's own scene: the run is tied to it

@@ -140,7 +140,8 @@ ContainedFile contained_file(const std::filesystem::path& folder, const std::str
     if (fs::path(name).is_absolute() || !inside)
         return {{},
                 fmt::format("the {} \"{}\" is outside the scene's folder", kind, name),
-                "put it beside the scene, or name the folder around it by root = \"...\" and it relative to that"};
+                "put it beside the scene, or name the folder around it by root = \"...\" and it relative to "
+                "that"};
     if (!fs::is_regular_file(file, error)) {
         const std::string maker = script_beside(home);
         return {{},

@@ -23,11 +23,11 @@ struct Checking {
     }
 };
 
-void check_clip(const Checking&);  ///< size, frames, steps in a frame
+void check_clip(const Checking&);    ///< size, frames, steps in a frame
 void check_cloths(const Checking&);  ///< names, number of particles
 void check_solids(const Checking&);  ///< names, shapes, friction
-void check_start(const Checking&);  ///< no solid holds a cloth
-void check_looks(const Checking&);  ///< cameras, textures
+void check_start(const Checking&);   ///< no solid holds a cloth
+void check_looks(const Checking&);   ///< cameras, textures
 
 /// A file that a scene names: it has to lie in the scene's root, also once links are resolved.
 struct ContainedFile {

@@ -28,10 +28,10 @@ void describe(Fields& f, MeshFile& mesh, const Key& file, bool body) {
     f.text(file, mesh.file, TextKind::path);
     const bool has = f.reading() ? f.says(file.name) : !file.applies || !mesh.file.empty();
     const bool applies = file.applies && has;
-    f.text({"mesh_object", "only this object of the file (an o line, a node of glTF)", false, applies}, mesh.object,
-           TextKind::name);
-    f.text({"mesh_group", "only this group of the file (a g line, a material of glTF)", false, applies}, mesh.group,
-           TextKind::name);
+    f.text({"mesh_object", "only this object of the file (an o line, a node of glTF)", false, applies},
+           mesh.object, TextKind::name);
+    f.text({"mesh_group", "only this group of the file (a g line, a material of glTF)", false, applies},
+           mesh.group, TextKind::name);
     f.number({"mesh_scale", "metres per unit of the mesh's file", false, applies}, mesh.scale,
              {1e-6, 1e6, false, "m"});
     f.choice({"mesh_up", "which axis of the mesh's file points up", false, applies}, mesh.up);
@@ -56,7 +56,9 @@ void describe(Fields& f, MeshFile& mesh, const Key& file, bool body) {
 void describe(Fields& f, Cloth& cloth) {
     f.place(cloth.place);
     f.text({"name", "for messages and reports"}, cloth.name, TextKind::name);
-    describe(f, cloth.mesh, {"mesh", "OBJ, PLY, STL or glTF file in the scene's folder; replaces particles and size"}, false);
+    describe(f, cloth.mesh,
+             {"mesh", "OBJ, PLY, STL or glTF file in the scene's folder; replaces particles and size"},
+             false);
     // A mesh brings its own particles and size; the schema shows the keys of both.
     const bool mesh = f.reading() ? f.says("mesh") : !cloth.mesh.file.empty();
     const bool grid = !mesh;

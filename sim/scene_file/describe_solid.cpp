@@ -31,7 +31,8 @@ void describe(Fields& f, MeshFrames& frames, bool applies) {
     f.number({"mesh_fps", "samples per second", false, samples}, frames.fps, {1e-3, 1e5});
     f.number({"mesh_start", "s, when the first sample, or the animation's beginning, is due", false, moves},
              frames.start, {-3600, 3600, false, "s"});
-    f.flag({"mesh_loop", "begin again at the end", false, moves && (!f.writing() || frames.loop)}, frames.loop);
+    f.flag({"mesh_loop", "begin again at the end", false, moves && (!f.writing() || frames.loop)},
+           frames.loop);
 }
 
 void describe(Fields& f, Solid& solid) {

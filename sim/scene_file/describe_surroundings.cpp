@@ -75,7 +75,8 @@ void describe(Fields& f, ClothLook& cloth) {
     f.text({"back", "\"#rrggbb\""}, cloth.back, TextKind::color);
     f.number({"scale", "m, period of checks or stripes"}, cloth.scale, {1e-4, 100, false, "m"});
     f.text({"texture",
-            "PNG file in the scene's folder; replaces the weave on the front, once over a grid, on a mesh as its "
+            "PNG file in the scene's folder; replaces the weave on the front, once over a grid, on a mesh as "
+            "its "
             "texture coordinates say"},
            cloth.texture, TextKind::path);
 }

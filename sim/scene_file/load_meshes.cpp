@@ -34,10 +34,9 @@ void ask_about_size(const MeshFiles& files, const Cloth& cloth) {
         break;
     }
     files.note(fmt::format("{}: the cloth is {:.3g} m wide: is that meant?{}", cloth.mesh.file, width,
-                           scale != cloth.mesh.scale
-                               ? fmt::format(" With mesh_scale = {:g} it is {:.3g} m", scale,
-                                             width * scale / cloth.mesh.scale)
-                               : ""));
+                           scale != cloth.mesh.scale ? fmt::format(" With mesh_scale = {:g} it is {:.3g} m",
+                                                                   scale, width * scale / cloth.mesh.scale)
+                                                     : ""));
 }
 
 void check_group(const MeshFiles& files, const Cloth& cloth, const std::string& path,
@@ -87,16 +86,16 @@ void load_mesh(const MeshFiles& files, Solid& solid, const std::string& path) {
     const MeshFile& file = solid.mesh;
     const bool solid_body = file.shell == 0;
     std::shared_ptr<const Figure> figure;
-    std::optional<PolygonMesh> mesh =
-        files.read_mesh(file, path + ".mesh", file.merge.value_or(true), hash,
-                        [&](PolygonMesh& one, MeshMessages& said) {
-                            if (solid_body) {
-                                cap_holes(one, file.holes == MeshHoles::cap ? HUGE_VAL : small_hole, said);
-                                turn_outward(one, said);
-                            }
-                            check_solid_mesh(one, solid_body, said);
-                        },
-                        solid.frames.animation, figure);
+    std::optional<PolygonMesh> mesh = files.read_mesh(
+        file, path + ".mesh", file.merge.value_or(true), hash,
+        [&](PolygonMesh& one, MeshMessages& said) {
+            if (solid_body) {
+                cap_holes(one, file.holes == MeshHoles::cap ? HUGE_VAL : small_hole, said);
+                turn_outward(one, said);
+            }
+            check_solid_mesh(one, solid_body, said);
+        },
+        solid.frames.animation, figure);
     if (!mesh) return;
     MeshSolid body;
     if (!solid.frames.files.empty()) {

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <set>
 
-#include "base/whole_file.hpp"
 #include "base/hash.hpp"
+#include "base/whole_file.hpp"
 #include "sim/mesh/pc2.hpp"
 #include "sim/mesh/read_mesh.hpp"
 #include "sim/mesh/repair.hpp"
-#include "sim/scene_file/check.hpp"
 #include "sim/scene/limits.hpp"
+#include "sim/scene_file/check.hpp"
 #include "sim/scene_file/similar.hpp"
 
 namespace unravel::sim {
@@ -34,7 +34,8 @@ bool MeshFiles::report(const std::string& path, const std::string& file, const M
         const std::string where = fault.line > 0 ? fmt::format("{}:{}", file, fault.line) : file;
         problem(path, fmt::format("{}: {}", where, fault.what), fault.hint);
     }
-    if (said.full()) problem(path, fmt::format("{} may have more faults than these", file), "mend them first");
+    if (said.full())
+        problem(path, fmt::format("{} may have more faults than these", file), "mend them first");
     return said.faults.empty();
 }
 
@@ -76,10 +77,11 @@ bool MeshFiles::keep_named(PolygonMesh& mesh, const MeshFile& file, const std::s
     return false;
 }
 
-std::optional<PolygonMesh> MeshFiles::read_mesh(
-    const MeshFile& file, const std::string& path, bool merge, std::uint64_t& hash,
-    const std::function<void(PolygonMesh&, MeshMessages&)>& judge, const std::string& animation,
-    std::shared_ptr<const Figure>& figure) const {
+std::optional<PolygonMesh> MeshFiles::read_mesh(const MeshFile& file, const std::string& path, bool merge,
+                                                std::uint64_t& hash,
+                                                const std::function<void(PolygonMesh&, MeshMessages&)>& judge,
+                                                const std::string& animation,
+                                                std::shared_ptr<const Figure>& figure) const {
     std::vector<std::uint8_t> bytes;
     if (!read(path, file.file, bytes, hash)) return {};
     MeshMessages said;

@@ -1,6 +1,6 @@
-// libFuzzer target of the readers of meshes. The first byte chooses the format, the rest is the file. Any bytes
-// have to end in a mesh whose numbers are all in range, or in a fault; what was read is mended and checked as
-// a body's and a cloth's is, and an animated figure is posed.
+// libFuzzer target of the readers of meshes. The first byte chooses the format, the rest is the file. Any
+// bytes have to end in a mesh whose numbers are all in range, or in a fault; what was read is mended and
+// checked as a body's and a cloth's is, and an animated figure is posed.
 //
 //   CXX=clang++ cmake -S . -B build/fuzz -G Ninja -DUNRAVEL_BUILD_FUZZ=ON
 //   cmake --build build/fuzz --target mesh_fuzz

@@ -14,7 +14,8 @@ float area_from_above(const ClothMesh& mesh, const std::vector<std::array<std::u
                       const std::vector<Vec3f>& x) {
     float area = 0;
     for (const auto& [a, b, c] : triangles) {
-        const Vec3f p = x[mesh.particle[b]] - x[mesh.particle[a]], q = x[mesh.particle[c]] - x[mesh.particle[a]];
+        const Vec3f p = x[mesh.particle[b]] - x[mesh.particle[a]],
+                    q = x[mesh.particle[c]] - x[mesh.particle[a]];
         area += 0.5f * std::abs(p.cross(q).y());
     }
     return area;

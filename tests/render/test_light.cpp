@@ -18,7 +18,8 @@ double mean_difference(const Image& a, const Image& b) {
     return sum / (0.75 * static_cast<double>(a.pixels.size()));
 }
 
-Image drawn(const GlContext& context, const DrawScene& scene, const DrawFrame& frame, RenderSettings settings) {
+Image drawn(const GlContext& context, const DrawScene& scene, const DrawFrame& frame,
+            RenderSettings settings) {
     Renderer renderer(context, scene, settings);
     Image image;
     renderer.draw(DrawStyle::textured, frame, image);
@@ -123,8 +124,8 @@ TEST_CASE("GL_no_light_comes_through_a_cloth_close_above") {
         int leaks = 0;
         for (int y = 30; y < 130; ++y)
             for (int x = 30; x < 130; ++x) leaks += shaded.at(x, y)[1] > open.at(x, y)[1] - 8;
-        INFO("gap " << gap << ": " << leaks << " of 10000 pixels lit; " << int(shaded.at(80, 80)[1]) << " against "
-                    << int(open.at(80, 80)[1]));
+        INFO("gap " << gap << ": " << leaks << " of 10000 pixels lit; " << int(shaded.at(80, 80)[1])
+                    << " against " << int(open.at(80, 80)[1]));
         CHECK(leaks == 0);
     }
 }
@@ -132,8 +133,8 @@ TEST_CASE("GL_no_light_comes_through_a_cloth_close_above") {
 TEST_CASE("GL_a_cloth_does_not_shade_itself_where_nothing_is_above") {
     const auto context = testing::open_renderer();
     if (!context) return;
-    // Gentle waves, lit at a slant: their light follows their slope, with no spots. Neighbours differ by no more than the
-    // shading does, which changes over 10 cm, and the dither.
+    // Gentle waves, lit at a slant: their light follows their slope, with no spots. Neighbours differ by no
+    // more than the shading does, which changes over 10 cm, and the dither.
     DrawScene scene = empty_scene({0, 0, 0});
     DrawFrame frame;
     scene.spacing = 0.01f;
@@ -191,12 +192,14 @@ TEST_CASE("GL_a_picture_lies_on_its_cloth_by_its_texture_coordinates") {
         DrawFrame frame;
         add_sheet(scene, frame, 21, 1, Vec3f(0, 0, 0));
         ClothMesh& mesh = scene.cloths[0];
-        for (Vec2f& uv : mesh.uv) uv = Vec2f(from + share * uv.x(), from + share * (1 - uv.y()));  // z is down
+        for (Vec2f& uv : mesh.uv)
+            uv = Vec2f(from + share * uv.x(), from + share * (1 - uv.y()));  // z is down
         mesh.picture_scale = {1, 1};
         mesh.texture = quarters;
         scene.bounds_low = {-0.5f, -0.1f, -0.5f};
         scene.bounds_high = {0.5f, 0.1f, 0.5f};
-        frame.camera = {.position = {0, 3, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}, .fov = 18.92f};  // ±0.5 m
+        frame.camera = {
+            .position = {0, 3, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}, .fov = 18.92f};  // ±0.5 m
         return drawn(*context, scene, frame, {.width = 120, .height = 120});
     };
     const auto at = [&](const Image& image, double x, double y) {
@@ -207,8 +210,8 @@ TEST_CASE("GL_a_picture_lies_on_its_cloth_by_its_texture_coordinates") {
     };
     CHECK(corners(look(0, 1)) == std::array{0, 1, 2, 3});
     CHECK(corners(look(-1, 1)) == std::array{0, 1, 2, 3});
-    CHECK(corners(look(0, 0.5f)) == std::array{2, 2, 2, 2});         // its lower left quarter
-    CHECK(corners(look(0.25f, 0.5f)) == std::array{0, 1, 2, 3});     // its middle
+    CHECK(corners(look(0, 0.5f)) == std::array{2, 2, 2, 2});      // its lower left quarter
+    CHECK(corners(look(0.25f, 0.5f)) == std::array{0, 1, 2, 3});  // its middle
     const Image nine = look(0, 3);
     for (const double x : {0., 1 / 3., 2 / 3.})
         for (const double y : {0., 1 / 3., 2 / 3.}) {
@@ -220,8 +223,8 @@ TEST_CASE("GL_a_picture_lies_on_its_cloth_by_its_texture_coordinates") {
 TEST_CASE("GL_slow_gradients_show_no_bands") {
     const auto context = testing::open_renderer();
     if (!context) return;
-    // The bare ground fades into the background: a step of one in 255 is spread over all that it takes, so that no two
-    // rows in a hundred have the same mean but for the ends.
+    // The bare ground fades into the background: a step of one in 255 is spread over all that it takes, so
+    // that no two rows in a hundred have the same mean but for the ends.
     DrawScene scene = empty_scene({216, 222, 230});
     scene.show_ground = true;
     DrawFrame frame;

@@ -217,9 +217,10 @@ TEST_CASE("palette_new_neighbours_differ_in_lightness") {
 }
 
 TEST_CASE("palette_colours_of_a_drape_hold_from_frame_to_frame") {
-    // Components of the 51 × 51 particles of a drape on a sphere: a row for each of its frames at 30 a second; red + 256
-    // green is the component, from 1 on, or 0 where a particle is fully constrained.
-    const Image record = read_png(std::filesystem::path(UNRAVEL_SOURCE_DIR) / "tests/render/drape_components.png");
+    // Components of the 51 × 51 particles of a drape on a sphere: a row for each of its frames at 30 a
+    // second; red + 256 green is the component, from 1 on, or 0 where a particle is fully constrained.
+    const Image record =
+        read_png(std::filesystem::path(UNRAVEL_SOURCE_DIR) / "tests/render/drape_components.png");
     const Edges edges = grid_edges(51);
     ComponentColors colors;
     SteadyColors steady;
@@ -241,7 +242,8 @@ TEST_CASE("palette_colours_of_a_drape_hold_from_frame_to_frame") {
         shown_before = shown;
     }
     const double all = static_cast<double>(frames) * record.width;
-    INFO("changes in " << 100 * raw_changes / all << "% of particle-frames, shown in " << 100 * shown_changes / all);
+    INFO("changes in " << 100 * raw_changes / all << "% of particle-frames, shown in "
+                       << 100 * shown_changes / all);
     CHECK(shown_changes / all < 0.04);
     CHECK(raw_changes / all < 0.16);
 }

@@ -37,7 +37,8 @@ constexpr double mesh_contact_step = 3.5e-6;              // with meshes
 constexpr double self_collision_step = 0.8e-6;
 // Seconds per frame of 1280 × 720, both views with PNG and video:
 constexpr double frame_pictures = 0.11;
-// Memory at its peak, measured within a factor of 1.5: of the simulation, and what pictures of 1280 × 720 add to it.
+// Memory at its peak, measured within a factor of 1.5: of the simulation, and what pictures of 1280 × 720 add
+// to it.
 constexpr double own_bytes = 45e6, grid_bytes = 1150, mesh_bytes = 5000;
 constexpr double picture_bytes = 230e6, grid_picture_bytes = 2050, mesh_picture_bytes = 2900;
 
@@ -144,8 +145,10 @@ int check(const CheckOptions& options) {
     });
     fmt::print("  {} frames at {} per second, {} steps of {} s\n", scene.clip.frames(), scene.clip.fps, steps,
                scene.solver.step);
-    fmt::print("  about {:.0f} MB of memory, {:.0f} with pictures; on one core {} of simulation and {} of pictures\n",
-               memory[0] / 1e6, memory[1] / 1e6, duration_text(seconds), duration_text(pictures));
+    fmt::print(
+        "  about {:.0f} MB of memory, {:.0f} with pictures; on one core {} of simulation and {} of "
+        "pictures\n",
+        memory[0] / 1e6, memory[1] / 1e6, duration_text(seconds), duration_text(pictures));
     for (const auto& [name, words] : plan_words(plan)) fmt::print("  {:<19} {}\n", name, words);
     for (const Effect& e : effects)
         fmt::print("  {:<15} {} because {}\n", e.name, e.on ? "on, " : "off,", e.because);

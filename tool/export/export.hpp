@@ -63,8 +63,8 @@ Written export_obj(const ExportSource& source, const std::filesystem::path& fold
 Written export_ply(const ExportSource& source, const std::filesystem::path& folder,
                    const std::function<std::vector<Rgb>(const FrameRecord&)>& colors);
 
-/// NAME.obj and NAME.pc2 (or NAME.mdd) for every cloth, and for every solid: its first frame as a mesh, and a point
-/// cache that moves it. Positions are rounded to floats once.
+/// NAME.obj and NAME.pc2 (or NAME.mdd) for every cloth, and for every solid: its first frame as a mesh, and a
+/// point cache that moves it. Positions are rounded to floats once.
 Written export_point_cache(const ExportSource& source, const std::filesystem::path& folder, bool mdd);
 
 /// Gives a source what is beside the scene's cloths: their looks, the solids, and the cameras if asked for.
@@ -72,8 +72,8 @@ Written export_point_cache(const ExportSource& source, const std::filesystem::pa
 void add_surroundings(ExportSource& source, const Scene& scene, bool cameras);
 
 /// NAME.glb, binary glTF 2.0: every cloth, and every solid that deforms, a mesh with one morph target per
-/// frame and an animation that is at the frame's own target at the frame's time; other solids and cameras nodes that
-/// move. Textures are inside. `name` of the file.
+/// frame and an animation that is at the frame's own target at the frame's time; other solids and cameras
+/// nodes that move. Textures are inside. `name` of the file.
 Written export_glb(const ExportSource& source, const std::filesystem::path& folder, const std::string& name);
 
 /// Where a solid's vertices are in the world at t [s]. (vertices) [m]

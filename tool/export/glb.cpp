@@ -139,7 +139,8 @@ public:
         animate_targets();
         animate_nodes();
         if (!animation_["channels"].empty()) document_["animations"] = Json::array({animation_});
-        const bool whole = write_glb(target, document_, binary_, [&](WholeFile& file) { return write_targets(file); });
+        const bool whole =
+            write_glb(target, document_, binary_, [&](WholeFile& file) { return write_targets(file); });
         return whole ? Written{target} : Written{};
     }
 
@@ -155,26 +156,29 @@ private:
     }
 
     // Two-sided, for cloth has two; a picture in the file's own bytes.
-    std::size_t add_material(const std::string& name, const Rgb& color, const std::vector<std::uint8_t>& texture,
-                             double roughness) {
+    std::size_t add_material(const std::string& name, const Rgb& color,
+                             const std::vector<std::uint8_t>& texture, double roughness) {
         Json surface{{"baseColorFactor", texture.empty() ? linear(color) : Json{1.0, 1.0, 1.0, 1.0}},
                      {"metallicFactor", 0.0},
                      {"roughnessFactor", roughness}};
         if (!texture.empty()) {
             document_["images"].push_back({{"bufferView", binary_.file(texture)}, {"mimeType", "image/png"}});
-            if (!document_.contains("samplers")) document_["samplers"] = Json::array({{{"wrapS", 10497}, {"wrapT", 10497}}});
+            if (!document_.contains("samplers"))
+                document_["samplers"] = Json::array({{{"wrapS", 10497}, {"wrapT", 10497}}});
             document_["textures"].push_back({{"sampler", 0}, {"source", document_["images"].size() - 1}});
             surface["baseColorTexture"] = {{"index", document_["textures"].size() - 1}};
         }
-        document_["materials"].push_back({{"name", name}, {"doubleSided", true}, {"pbrMetallicRoughness", surface}});
+        document_["materials"].push_back(
+            {{"name", name}, {"doubleSided", true}, {"pbrMetallicRoughness", surface}});
         return document_["materials"].size() - 1;
     }
 
-    std::size_t add_mesh(const std::string& name, const Posture& base, const Vertices& vertices, bool textured,
-                         std::size_t material) {
-        Json primitive{{"attributes",
-                        {{"POSITION", binary_.vertices(base.positions)}, {"NORMAL", binary_.vertices(base.normals)}}},
-                       {"material", material}};
+    std::size_t add_mesh(const std::string& name, const Posture& base, const Vertices& vertices,
+                         bool textured, std::size_t material) {
+        Json primitive{
+            {"attributes",
+             {{"POSITION", binary_.vertices(base.positions)}, {"NORMAL", binary_.vertices(base.normals)}}},
+            {"material", material}};
         if (textured) primitive["attributes"]["TEXCOORD_0"] = binary_.pairs(vertices.uv);
         primitive["indices"] = binary_.indices(vertices.indices);
         document_["meshes"].push_back({{"name", name}, {"primitives", Json::array({primitive})}});
@@ -198,7 +202,8 @@ private:
             return std::vector<Vec3>(x.begin(), x.end());
         };
         add_shape(patch.name, {surface, Vertices(surface, patch.count()), positions, 0, {}}, first,
-                  add_material(patch.name, look.front, surface.uvs.empty() ? std::vector<std::uint8_t>{} : look.texture, 0.9));
+                  add_material(patch.name, look.front,
+                               surface.uvs.empty() ? std::vector<std::uint8_t>{} : look.texture, 0.9));
     }
 
     void add_solid(const ExportSolid& solid, const FrameRecord& first) {
@@ -214,17 +219,20 @@ private:
         }
         std::vector<Vec3> x;
         for (const Vec3f& at : solid.positions) x.push_back(at.cast<double>());
-        const std::size_t mesh = add_mesh(solid.name, shape_of(surface, vertices, x), vertices, false, material);
+        const std::size_t mesh =
+            add_mesh(solid.name, shape_of(surface, vertices, x), vertices, false, material);
         add_placed({{"mesh", mesh}, {"name", solid.name}}, solid.pose, solid.moves);
     }
 
     void add_camera(const ExportCamera& camera) {
         const double fov = camera.view(time_of(0)).fov * std::numbers::pi / 180.0;
-        document_["cameras"].push_back({{"type", "perspective"},
-                                        {"name", camera.name},
-                                        {"perspective", {{"yfov", fov}, {"aspectRatio", camera.aspect}, {"znear", 0.01}}}});
-        add_placed({{"camera", document_["cameras"].size() - 1}, {"name", camera.name}},
-                   [&camera](double t) { return placed(camera.view(t)); }, true);
+        document_["cameras"].push_back(
+            {{"type", "perspective"},
+             {"name", camera.name},
+             {"perspective", {{"yfov", fov}, {"aspectRatio", camera.aspect}, {"znear", 0.01}}}});
+        add_placed(
+            {{"camera", document_["cameras"].size() - 1}, {"name", camera.name}},
+            [&camera](double t) { return placed(camera.view(t)); }, true);
     }
 
     // A node that is where `pose` says at the first frame, and moves with it.

@@ -36,14 +36,15 @@ void GlbBinary::view(std::size_t size, Use use) {
 int GlbBinary::accessor(std::size_t count, const char* type, int component, std::size_t size, Use use,
                         Json more) {
     view(size, use);
-    Json made{{"bufferView", views.size() - 1}, {"componentType", component}, {"count", count}, {"type", type}};
+    Json made{
+        {"bufferView", views.size() - 1}, {"componentType", component}, {"count", count}, {"type", type}};
     if (more.is_object()) made.update(more);
     accessors.push_back(std::move(made));
     return static_cast<int>(accessors.size()) - 1;
 }
 
-int GlbBinary::put(std::span<const std::byte> values, std::size_t count, const char* type, int component, Use use,
-                   Json more) {
+int GlbBinary::put(std::span<const std::byte> values, std::size_t count, const char* type, int component,
+                   Use use, Json more) {
     const int number = accessor(count, type, component, values.size(), use, std::move(more));
     std::vector<std::uint8_t>& to = later_ == 0 ? before_ : after_;
     const auto* from = reinterpret_cast<const std::uint8_t*>(values.data());
@@ -69,7 +70,8 @@ int GlbBinary::scalars(const std::vector<float>& values, bool bounds) {
         const auto [low, high] = std::minmax_element(values.begin(), values.end());
         more = {{"min", Json::array({*low})}, {"max", Json::array({*high})}};
     }
-    return put(std::as_bytes(std::span(values)), values.size(), "SCALAR", float_type, animation, std::move(more));
+    return put(std::as_bytes(std::span(values)), values.size(), "SCALAR", float_type, animation,
+               std::move(more));
 }
 
 int GlbBinary::places(std::span<const Eigen::Vector3f> values) {
@@ -89,7 +91,8 @@ int GlbBinary::file(std::span<const std::uint8_t> content) {
 }
 
 int GlbBinary::later(std::span<const Eigen::Vector3f> values) {
-    const int number = accessor(values.size(), "VEC3", float_type, values.size_bytes(), attributes, bounds_of(values));
+    const int number =
+        accessor(values.size(), "VEC3", float_type, values.size_bytes(), attributes, bounds_of(values));
     later_ += values.size_bytes();
     return number;
 }

@@ -37,8 +37,8 @@ Written export_point_cache(const ExportSource& source, const std::filesystem::pa
     const std::size_t cloths = source.surfaces.size();
     std::vector<std::unique_ptr<WholeFile>> meshes, caches;
     for (std::size_t k = 0; k < names.size(); ++k) {
-        const auto points = static_cast<std::uint32_t>(k < cloths ? source.model.cloths[k].count()
-                                                                  : source.solids[k - cloths].positions.size());
+        const auto points = static_cast<std::uint32_t>(
+            k < cloths ? source.model.cloths[k].count() : source.solids[k - cloths].positions.size());
         meshes.push_back(std::make_unique<WholeFile>(folder / (names[k] + ".obj")));
         caches.push_back(std::make_unique<WholeFile>(folder / (names[k] + (mdd ? ".mdd" : ".pc2"))));
         const Pc2Header header{static_cast<std::int32_t>(points), static_cast<float>(source.first), 1.0f,
@@ -55,8 +55,9 @@ Written export_point_cache(const ExportSource& source, const std::filesystem::pa
                 k < cloths ? positions_of(source.model.cloths[k], record) : std::span<const Vec3>(of_solid);
             if (frame == source.first) {
                 meshes[k]->write(std::string_view("# unravel: metres, right-handed, y up\n"));
-                meshes[k]->write(k < cloths ? obj_text(names[k], source.model.cloths[k], source.surfaces[k], x, 0, 0)
-                                            : obj_text(names[k], source.solids[k - cloths], x, 0));
+                meshes[k]->write(k < cloths
+                                     ? obj_text(names[k], source.model.cloths[k], source.surfaces[k], x, 0, 0)
+                                     : obj_text(names[k], source.solids[k - cloths], x, 0));
             }
             bytes.clear();
             for (const Vec3& p : x) {

@@ -67,7 +67,8 @@ void add_surroundings(ExportSource& source, const Scene& scene, bool cameras) {
         if (!scene.look.cloth.empty()) {
             const ClothLook& look = scene.look.cloth[std::min(c, scene.look.cloth.size() - 1)];
             out.front = parse_color(look.front);
-            if (!look.texture.empty()) out.texture = read_whole_file(scene.home / look.texture, largest_picture);
+            if (!look.texture.empty())
+                out.texture = read_whole_file(scene.home / look.texture, largest_picture);
         }
         source.looks.push_back(std::move(out));
     }

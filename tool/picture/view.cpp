@@ -169,7 +169,8 @@ DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Pla
         }
         const ClothPatch& patch = model.cloths[c];
         const int level = display_level(scene.look, patch);
-        ClothMesh& mesh = out.cloths.emplace_back(patch.grid() ? grid_mesh(patch, level, first) : face_mesh(patch));
+        ClothMesh& mesh =
+            out.cloths.emplace_back(patch.grid() ? grid_mesh(patch, level, first) : face_mesh(patch));
         mesh.appearance = appearance;
         if (level > 0) first += FineGrid(patch, level).size();
         if (!appearance.texture.empty() && !textures.empty())

@@ -95,7 +95,8 @@ std::string figure_glb(const std::string& interpolation, const Json& more = {}) 
     const auto add = [&](const std::string& bytes, int type, const char* kind, std::size_t count) {
         views.push_back({{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", bytes.size()}});
         binary += bytes + std::string((4 - bytes.size() % 4) % 4, '\0');
-        accessors.push_back({{"bufferView", views.size() - 1}, {"componentType", type}, {"count", count}, {"type", kind}});
+        accessors.push_back(
+            {{"bufferView", views.size() - 1}, {"componentType", type}, {"count", count}, {"type", kind}});
         return accessors.size() - 1;
     };
     std::string positions, joints, weights, indices, lift, uv;
@@ -106,15 +107,18 @@ std::string figure_glb(const std::string& interpolation, const Json& more = {}) 
             for (const double value : x) put(positions, static_cast<float>(value));
             for (const int joint : {0, 1, 0, 0}) put(joints, static_cast<std::uint8_t>(joint));
             const std::uint8_t upper = x.y() > 0.5 ? 255 : 0;
-            for (const int weight : {255 - upper, int{upper}, 0, 0}) put(weights, static_cast<std::uint8_t>(weight));
-            for (const double value : {0.0, x.y() > 0.5 ? 0.5 : 0.0, 0.0}) put(lift, static_cast<float>(value));
+            for (const int weight : {255 - upper, int{upper}, 0, 0})
+                put(weights, static_cast<std::uint8_t>(weight));
+            for (const double value : {0.0, x.y() > 0.5 ? 0.5 : 0.0, 0.0})
+                put(lift, static_cast<float>(value));
             put(uv, static_cast<float>(corner % 4 / 2));
             put(uv, 0.25f);
             ++corner;
         }
         for (const int k : {4, 3, 2, 4, 2, 1}) put(indices, static_cast<std::uint16_t>(corner - k));
     }
-    Json attributes{{"POSITION", add(positions, 5126, "VEC3", 24)}, {"JOINTS_0", add(joints, 5121, "VEC4", 24)}};
+    Json attributes{{"POSITION", add(positions, 5126, "VEC3", 24)},
+                    {"JOINTS_0", add(joints, 5121, "VEC4", 24)}};
     attributes["WEIGHTS_0"] = add(weights, 5121, "VEC4", 24);
     accessors.back()["normalized"] = true;
     attributes["TEXCOORD_0"] = add(uv, 5126, "VEC2", 24);
@@ -124,7 +128,8 @@ std::string figure_glb(const std::string& interpolation, const Json& more = {}) 
         for (const std::vector<float>& key : keys) {
             const std::vector<float> zero(key.size(), 0.0f);
             const bool cubic = interpolation == "CUBICSPLINE";
-            for (const auto& part : cubic ? std::vector<std::vector<float>>{zero, key, zero} : std::vector<std::vector<float>>{key})
+            for (const auto& part : cubic ? std::vector<std::vector<float>>{zero, key, zero}
+                                          : std::vector<std::vector<float>>{key})
                 for (const float value : part) put(out, value);
         }
     };
@@ -133,7 +138,8 @@ std::string figure_glb(const std::string& interpolation, const Json& more = {}) 
     values(places, {{0, 0.5, 0}, {0, 2.5, 0}});
     values(shares, {{0}, {1}});
     for (int k = 0; k < 2; ++k) {
-        for (const float value : {1.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, -0.5f * float(k), 0.f, 1.f})
+        for (const float value :
+             {1.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, -0.5f * float(k), 0.f, 1.f})
             put(binds, value);
     }
     const std::size_t keys = interpolation == "CUBICSPLINE" ? 6 : 2;
@@ -145,21 +151,26 @@ std::string figure_glb(const std::string& interpolation, const Json& more = {}) 
         {"asset", {{"version", "2.0"}}},
         {"scene", 0},
         {"scenes", Json::array({{{"nodes", {0, 2}}}})},
-        {"nodes", Json::array({{{"children", {1}}}, {{"translation", {0, 0.5, 0}}}, {{"mesh", 0}, {"skin", 0}, {"name", "figure"}}})},
+        {"nodes", Json::array({{{"children", {1}}},
+                               {{"translation", {0, 0.5, 0}}},
+                               {{"mesh", 0}, {"skin", 0}, {"name", "figure"}}})},
         {"skins", Json::array({{{"joints", {0, 1}}, {"inverseBindMatrices", bind}}})},
-        {"meshes", Json::array({{{"primitives", Json::array({{{"attributes", attributes},
-                                                               {"indices", index},
-                                                               {"targets", Json::array({{{"POSITION", target}}})}}})}}})},
+        {"meshes", Json::array({{{"primitives",
+                                  Json::array({{{"attributes", attributes},
+                                                {"indices", index},
+                                                {"targets", Json::array({{{"POSITION", target}}})}}})}}})},
         {"accessors", accessors},
         {"bufferViews", views},
         {"buffers", Json::array({{{"byteLength", binary.size()}}})}};
     Json channels = Json::array(), samplers = Json::array();
-    for (const auto& [output, path, node] : {std::tuple{turn, "rotation", 1}, std::tuple{place, "translation", 1},
-                                             std::tuple{share, "weights", 2}}) {
+    for (const auto& [output, path, node] :
+         {std::tuple{turn, "rotation", 1}, std::tuple{place, "translation", 1},
+          std::tuple{share, "weights", 2}}) {
         channels.push_back({{"sampler", samplers.size()}, {"target", {{"node", node}, {"path", path}}}});
         samplers.push_back({{"input", time}, {"output", output}, {"interpolation", interpolation}});
     }
-    document["animations"] = Json::array({{{"name", "rise"}, {"channels", channels}, {"samplers", samplers}}});
+    document["animations"] =
+        Json::array({{{"name", "rise"}, {"channels", channels}, {"samplers", samplers}}});
     if (more.is_object()) document.merge_patch(more);
     std::string text = document.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
@@ -174,7 +185,8 @@ std::string figure_glb(const std::string& interpolation, const Json& more = {}) 
     return out + binary;
 }
 
-PolygonMesh parse_glb(const std::string& glb, const std::string& animation, std::shared_ptr<const Figure>& figure) {
+PolygonMesh parse_glb(const std::string& glb, const std::string& animation,
+                      std::shared_ptr<const Figure>& figure) {
     MeshMessages said;
     PolygonMesh mesh = parse_gltf(bytes_of(glb), animation, said, figure);
     for (const MeshFault& fault : said.faults) FAIL(fault.what);
@@ -184,7 +196,8 @@ PolygonMesh parse_glb(const std::string& glb, const std::string& animation, std:
 }  // namespace
 
 TEST_CASE("PLY and STL of every kind are the box that they were made from", "[mesh]") {
-    for (const std::string& file : {box_ply("ascii"), box_ply("binary_little_endian"), box_ply("binary_big_endian")}) {
+    for (const std::string& file :
+         {box_ply("ascii"), box_ply("binary_little_endian"), box_ply("binary_big_endian")}) {
         MeshMessages said;
         const PolygonMesh mesh = parse_ply(bytes_of(file), said);
         REQUIRE(said.faults.empty());
@@ -270,7 +283,8 @@ TEST_CASE("an animation is sampled as glTF says, bent by joints and lifted by it
                     continue;
                 }
                 const Vec3 lifted = at + Vec3(0, 0.5 * share, 0);
-                const Vec3 moved = joint + Eigen::AngleAxisd(angle, Vec3::UnitZ()) * (lifted - Vec3(0, 0.5, 0));
+                const Vec3 moved =
+                    joint + Eigen::AngleAxisd(angle, Vec3::UnitZ()) * (lifted - Vec3(0, 0.5, 0));
                 CHECK((now[v] - moved).norm() < 1e-6);
             }
         }
@@ -282,8 +296,8 @@ TEST_CASE("an animated figure is a body of the scene, turned and scaled as its f
     write_whole_file(folder.path() / "figure.glb", std::string_view(figure_glb("LINEAR")));
     const std::string solid =
         "[cloth]\ncenter = [9, 9, 9]\n[[solid]]\nshape = \"mesh\"\nmesh = \"figure.glb\"\n";
-    const Scene scene = parse_scene(solid + "animation = \"rise\"\nmesh_scale = 2\nmesh_start = 1\n", "scene.toml",
-                                    folder.path());
+    const Scene scene = parse_scene(solid + "animation = \"rise\"\nmesh_scale = 2\nmesh_start = 1\n",
+                                    "scene.toml", folder.path());
     const MeshSolid& body = *scene.solids[0].geometry;
     CHECK(body.deforms());
     CHECK(body.triangles.size() == 12);
@@ -307,13 +321,15 @@ TEST_CASE("an animated figure is a body of the scene, turned and scaled as its f
     CHECK(still.notes[0] == "figure.glb: the scene names no animation, so none is played; it has \"rise\"");
     CHECK_THROWS_WITH(parse_scene(solid + "animation = \"fall\"\n", "scene.toml", folder.path()),
                       Contains("it has no animation \"fall\", but \"rise\""));
-    CHECK_THROWS_WITH(parse_scene(solid + "animation = \"rise\"\nmesh_frames = \"a.pc2\"\n", "scene.toml", folder.path()),
-                      Contains("a mesh that deforms in two ways"));
+    CHECK_THROWS_WITH(
+        parse_scene(solid + "animation = \"rise\"\nmesh_frames = \"a.pc2\"\n", "scene.toml", folder.path()),
+        Contains("a mesh that deforms in two ways"));
 }
 
 TEST_CASE("a glTF file that is not as the format says is refused with what is wrong", "[mesh]") {
     const std::pair<Json, const char*> broken[] = {
-        {{{"extensionsRequired", {"KHR_draco_mesh_compression"}}}, "it needs the extension KHR_draco_mesh_compression"},
+        {{{"extensionsRequired", {"KHR_draco_mesh_compression"}}},
+         "it needs the extension KHR_draco_mesh_compression"},
         {{{"scenes", Json::array({{{"nodes", {0, 1, 2}}}})}}, "node 1 has two parents"},
         {{{"scenes", Json::array({{{"nodes", {0, 7}}}})}}, "there is no node 7"},
         {{{"skins", Json::array({{{"joints", {0}}}})}}, "a vertex hangs on joint 1 of 1"},

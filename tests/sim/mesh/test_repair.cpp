@@ -58,15 +58,24 @@ TEST_CASE("a polygon's pieces fill it, and none is turned over", "[mesh]") {
             polygons.push_back(std::move(polygon));
         }
     }
-    // A comb, whose teeth hide one another, and a frame: a hole reached over a bridge that is run along twice.
+    // A comb, whose teeth hide one another, and a frame: a hole reached over a bridge that is run along
+    // twice.
     std::vector<Vec3> comb{{0, 0, 0}, {9, 0, 0}};
     for (int k = 0; k < 9; ++k) {
         comb.emplace_back(9 - k, 3, 0);
         comb.emplace_back(8.5 - k, 1, 0);
     }
     polygons.push_back(comb);
-    polygons.push_back({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0},
-                        {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}});
+    polygons.push_back({{0, 0, 0},
+                        {4, 0, 0},
+                        {4, 4, 0},
+                        {0, 4, 0},
+                        {0, 0, 0},
+                        {1, 1, 0},
+                        {1, 3, 0},
+                        {3, 3, 0},
+                        {3, 1, 0},
+                        {1, 1, 0}});
     for (const std::vector<Vec3>& polygon : polygons) {
         CAPTURE(polygon.size());
         const std::vector<Piece> pieces = cut_polygon(polygon);
@@ -106,12 +115,18 @@ TEST_CASE("each file that can be read is, with a word for what was done", "[mesh
     const std::vector<Mended> all{
         {"contin.obj", "", 9, 4, {}},
         {"bom.obj", "", 9, 4, {}},
-        {"attrs.obj", "", 9, 4,
+        {"attrs.obj",
+         "",
+         9,
+         4,
          {"mesh.obj: passed over: lines of 'usemap', 'c_interp', 'lod', 'bevel', 'd_interp', 'maplib'"}},
         {"slash2.obj", "", 9, 4, {}},
         {"novn.obj", "", 9, 4, {}},
         {"fwd.obj", "", 9, 4, {}},
-        {"ngon.obj", "", 9, 4,
+        {"ngon.obj",
+         "",
+         9,
+         4,
          {"mesh.obj: 1 face of more than four corners or not convex: cut into triangles and quads"}},
         {"unref.obj", "", 9, 4, {"mesh.obj: 1 vertex belongs to no face: dropped"}},
         {"dup.obj", "mesh_merge = true\n", 9, 4, {"mesh.obj: 1 vertex lies on another: merged"}},
@@ -182,8 +197,9 @@ TEST_CASE("neighbours that face opposite ways are turned alike, the fewest of th
 }
 
 TEST_CASE("a part of a file is its faces and their vertices, in the file's order", "[mesh][scene]") {
-    const std::string two = "o shirt\nv 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 4 3 2\n"
-                            "o skirt\ng left side\nv 3 0 0\nv 4 0 0\nv 4 0 1\nv 3 0 1\nf 5 8 7 6\n";
+    const std::string two =
+        "o shirt\nv 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 4 3 2\n"
+        "o skirt\ng left side\nv 3 0 0\nv 4 0 0\nv 4 0 1\nv 3 0 1\nf 5 8 7 6\n";
     const testing::MeshScene skirt("[cloth]\nmesh = \"mesh.obj\"\nmesh_object = \"skirt\"\n", two);
     const MeshCloth& mesh = *skirt.scene.cloths[0].geometry;
     REQUIRE(mesh.rest.size() == 4);

@@ -215,7 +215,8 @@ TEST_CASE("glTF's targets put the vertices where the frames have them", "[export
     CHECK(json["accessors"][sampler["output"].get<int>()]["count"] == 6);
 }
 
-TEST_CASE("glTF has the solids where the scene has them, textures as they are, and cameras if asked for", "[export]") {
+TEST_CASE("glTF has the solids where the scene has them, textures as they are, and cameras if asked for",
+          "[export]") {
     const TemporaryFolder folder;
     const std::string tetra = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
     write_whole_file(folder.path() / "t_0.obj", std::string_view(tetra));
@@ -226,10 +227,12 @@ TEST_CASE("glTF has the solids where the scene has them, textures as they are, a
     const std::vector<std::uint8_t> png = render::encode_png(image);
     write_whole_file(folder.path() / "a.png", std::span(png));
     const Scene scene = parse_scene(
-        "[clip]\nfps = 10\nduration = 0.2\nsize = [320, 160]\n[cloth]\nparticles = [3, 3]\ncenter = [0, 9, 0]\n"
+        "[clip]\nfps = 10\nduration = 0.2\nsize = [320, 160]\n[cloth]\nparticles = [3, 3]\ncenter = [0, 9, "
+        "0]\n"
         "[[solid]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 0.5\ncenter = [1, 2, 3]\n"
         "motion = [{time = 0}, {time = 0.2, position = [0, 1, 0], rotation = [0, 90, 0]}]\n"
-        "[[solid]]\nname = \"soft\"\nshape = \"mesh\"\nmesh = \"t_0.obj\"\nmesh_frames = \"t_#.obj\"\nmesh_fps = 5\n"
+        "[[solid]]\nname = \"soft\"\nshape = \"mesh\"\nmesh = \"t_0.obj\"\nmesh_frames = "
+        "\"t_#.obj\"\nmesh_fps = 5\n"
         "[[camera]]\nname = \"main\"\nposition = [0, 1, 5]\ntarget = [0, 1, 0]\nfov = 45\n"
         "[[look.cloth]]\ntexture = \"a.png\"\n",
         "beside.toml", folder.path());
@@ -243,14 +246,17 @@ TEST_CASE("glTF has the solids where the scene has them, textures as they are, a
     const Written written = export_glb(source, folder.path(), "beside");
     const std::vector<std::uint8_t> bytes = read_whole_file(written.at(0), largest);
     const std::size_t json_size = take<std::uint32_t>(bytes, 12), binary = 20 + json_size + 8;
-    const auto json = nlohmann::json::parse(bytes.begin() + 20, bytes.begin() + 20 + std::ptrdiff_t(json_size));
+    const auto json =
+        nlohmann::json::parse(bytes.begin() + 20, bytes.begin() + 20 + std::ptrdiff_t(json_size));
     const auto offset = [&](const nlohmann::json& view) {
         return binary + json["bufferViews"][view.get<std::size_t>()]["byteOffset"].get<std::size_t>();
     };
     const auto value = [&](const nlohmann::json& accessor, std::size_t k) {
-        return take<float>(bytes, offset(json["accessors"][accessor.get<std::size_t>()]["bufferView"]) + 4 * k);
+        return take<float>(bytes,
+                           offset(json["accessors"][accessor.get<std::size_t>()]["bufferView"]) + 4 * k);
     };
-    CHECK(std::equal(png.begin(), png.end(), bytes.begin() + std::ptrdiff_t(offset(json["images"][0]["bufferView"]))));
+    CHECK(std::equal(png.begin(), png.end(),
+                     bytes.begin() + std::ptrdiff_t(offset(json["images"][0]["bufferView"]))));
     CHECK(json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] == 0);
 
     std::map<std::string, std::size_t> node;
@@ -267,7 +273,8 @@ TEST_CASE("glTF has the solids where the scene has them, textures as they are, a
     CHECK(value(output("ball", "translation"), 7) == 3.0f);
     CHECK(value(output("ball", "rotation"), 4 * 2 + 1) == Approx(std::sqrt(0.5)));
     CHECK(output("soft", "translation").is_null());
-    const auto& primitive = json["meshes"][json["nodes"][node.at("soft")]["mesh"].get<std::size_t>()]["primitives"][0];
+    const auto& primitive =
+        json["meshes"][json["nodes"][node.at("soft")]["mesh"].get<std::size_t>()]["primitives"][0];
     CHECK(value(primitive["attributes"]["POSITION"], 3 * 3 + 2) == 1.0f);
     CHECK(value(primitive["targets"][1]["POSITION"], 3 * 3 + 2) == 2.0f);
     // The camera stands before the scene and looks at it: unturned.

@@ -143,8 +143,9 @@ TEST_CASE("wires_tell_the_splitting_strain_and_contact_of_their_springs") {
 
 TEST_CASE("a_picture_lies_on_a_mesh_by_its_texture_coordinates_and_once_on_a_grid") {
     // Two triangles whose coordinates go down to -1 and up to 2, and a square of a metre with none.
-    const std::string placed = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt -1 -1\nvt 2 -1\nvt 2 0.5\nvt -1 0.5\n"
-                               "f 1/1 4/4 3/3\nf 1/1 3/3 2/2\n";
+    const std::string placed =
+        "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt -1 -1\nvt 2 -1\nvt 2 0.5\nvt -1 0.5\n"
+        "f 1/1 4/4 3/3\nf 1/1 3/3 2/2\n";
     const std::string bare = "v -3 0 -3\nv -2 0 -3\nv -2 0 -2\nv -3 0 -2\nf 1 4 3\nf 1 3 2\n";
     const auto corners = [](const Scene& scene) {
         Placement placement;
@@ -175,7 +176,8 @@ TEST_CASE("a_picture_lies_on_a_mesh_by_its_texture_coordinates_and_once_on_a_gri
 TEST_CASE("the_bounds_of_a_clip_hold_where_pins_and_solids_go") {
     Scene scene = testing::drape(7);
     scene.clip.duration = 2;
-    scene.solids[0].motion = {{0, {0, 0, 0}, {0, 0, 0}}, {1, {0, 0, 4}, {0, 0, 0}}, {2, {0, 0, 0}, {0, 0, 0}}};
+    scene.solids[0].motion = {
+        {0, {0, 0, 0}, {0, 0, 0}}, {1, {0, 0, 4}, {0, 0, 0}}, {2, {0, 0, 0}, {0, 0, 0}}};
     Pin pin;
     pin.name = "u0v0";
     pin.motion = {{0, {0, 0, 0}, {0, 0, 0}}, {2, {5, 0, 0}, {0, 0, 0}}};
