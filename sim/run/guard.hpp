@@ -21,7 +21,8 @@ struct Guard {
 /// The guard of a run that starts at `start`. Strain may reach 10 beyond what the scene placed; energy of
 /// motion and height twice what the run has to spend: springs, motion, and a fall through the cloth's own
 /// size. Energy in springs is not counted: a stiff spring that goes taut within a long step holds much of it
-/// for that one step. `h` [s] is the step that the springs' energy is measured for.
+/// for that one step. A cloth that rests where nothing pulls has nothing to spend: what its positions' last
+/// bits may hold is added. `h` [s] is the step that the springs' energy is measured for.
 Guard make_guard(const ClothModel& model, const ClothState& start, double h);
 
 /// True where a scene puts energy in while it runs: moving pins or solids, or a force that does.

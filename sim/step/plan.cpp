@@ -13,11 +13,6 @@ namespace unravel::sim {
 
 namespace {
 
-// Share of the limit of stability that a substep chosen here may reach. The limit is that of the cloth laid
-// flat; air, bending and stretched cells take their part: a hanging sheet of 201 × 201 breaks at 0.9 and is
-// as with substeps half as long at 0.75.
-constexpr double limit_margin = 0.75;
-
 std::string why_general(const ClothModel& model, const StepOptions& options, bool looks_ahead) {
     if (!options.sweep) return "the general path was asked for";
     if (looks_ahead) return "springs are linearised elsewhere than forces are taken";
@@ -33,7 +28,7 @@ void plan_integrator(const ClothModel& model, const StepOptions& options, double
         const IntegratorCosts costs = count_costs(model, options, h, memory);
         plan.integrator = costs.cheaper();
         plan.integrator_because = fmt::format(
-            "explicit would need {} substeps, about {:.2g} us per particle and step against {:.2g}",
+            "explicit would need {:.6g} substeps, about {:.2g} us per particle and step against {:.2g}",
             costs.substeps, 1e-3 * costs.explicit_cost, 1e-3 * costs.coupled_cost);
         asked.substeps = 0;
     }
@@ -42,7 +37,8 @@ void plan_integrator(const ClothModel& model, const StepOptions& options, double
         plan.way_because = "implicit springs couple particles";
         return;
     }
-    plan.substeps = substeps_of(model, asked, h, memory);
+    // Who starts a run has refused what is more than most_substeps.
+    plan.substeps = static_cast<int>(std::min(substeps_of(model, asked, h, memory), 1e9));
     const std::string why_not = options.sweep ? why_not_swept(model) : "the general path was asked for";
     plan.way = why_not.empty() ? StepPlan::Way::swept : StepPlan::Way::in_turn;
     plan.way_because =
@@ -106,14 +102,14 @@ const char* way_name(StepPlan::Way way) {
     return "coupled";
 }
 
-int substeps_of(const ClothModel& model, const StepOptions& options, double h, PlanMemory& memory) {
+double substeps_of(const ClothModel& model, const StepOptions& options, double h, PlanMemory& memory) {
     if (options.substeps > 0) return options.substeps;
     if (memory.stable_step == 0) {
         StepOptions whole = options;
         whole.substeps = 1;
         memory.stable_step = explicit_limit(model, whole, h).step;
     }
-    return std::max(1, static_cast<int>(std::ceil(h / (limit_margin * memory.stable_step) - 1e-9)));
+    return stable_substeps(h, memory.stable_step);
 }
 
 PlanMemory::Key plan_key(const ClothModel& model, const StepOptions& options, double h, bool looks_ahead) {

@@ -99,8 +99,9 @@ struct PlanMemory {
 };
 
 /// Substeps that a step of h seconds of `explicit` is divided into: as many as the options say, or as bring
-/// each below its limit of stability (sim/step/explicit_limit.hpp) by a margin.
-int substeps_of(const ClothModel& model, const StepOptions& options, double h, PlanMemory& memory);
+/// each below its limit of stability (sim/step/explicit_limit.hpp) by a margin. A whole number, as large as
+/// it may be.
+double substeps_of(const ClothModel& model, const StepOptions& options, double h, PlanMemory& memory);
 
 PlanMemory::Key plan_key(const ClothModel& model, const StepOptions& options, double h, bool looks_ahead);
 

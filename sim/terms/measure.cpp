@@ -17,4 +17,10 @@ void measure(const ClothModel& model, const ForceMemory& forces, std::span<const
     for (const Vec3& position : x) report.lowest = std::min(report.lowest, position.y());
 }
 
+double position_rounding(std::span<const Vec3> x) {
+    double farthest = 0;
+    for (const Vec3& position : x) farthest = std::max(farthest, position.cwiseAbs().maxCoeff());
+    return 1e-12 * farthest;
+}
+
 }  // namespace unravel::sim

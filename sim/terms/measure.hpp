@@ -32,4 +32,8 @@ inline void measure(const ClothModel& model, const ForceMemory& forces, const Cl
     measure(model, forces, state.x, state.v, ws, report);
 }
 
+/// What is rounding in positions, where they are (particles): far above their last bits, far below anything
+/// that can be seen [m].
+double position_rounding(std::span<const Vec3> x);
+
 }  // namespace unravel::sim

@@ -124,3 +124,39 @@ TEST_CASE("steps taken again are taken again after a resume") {
         restore(resumed, record);
     }
 }
+TEST_CASE("a free sheet at rest stays at rest") {
+    for (const char* step : {"1/240", "1/990"}) {
+        Simulation s = start_simulation(parse_scene(
+            "gravity = [0, 0, 0]\n[cloth]\nparticles = [15, 19]\nsize = [0.348007, 0.484755]\n"
+            "center = [0.08, 0.11, 0.014]\nmaterial = { preset = \"cotton\" }\n[solver]\nstep = \"" +
+                std::string(step) + "\"\n",
+            "sheet.toml"));
+        const std::vector<Vec3> start = s.state.x;
+        for (int k = 0; k < 30; ++k) next_step(s);
+        for (std::size_t p = 0; p < start.size(); ++p) CHECK((s.state.x[p] - start[p]).norm() < 1e-10);
+    }
+}
+
+TEST_CASE("Newton's method is done at once where nothing moves") {
+    Simulation s = start_simulation(
+        parse_scene("gravity = [0, 0, 0]\n[cloth]\nparticles = [21, 21]\nmaterial = { preset = \"cotton\" }\n"
+                    "[[cloth.pin]]\nedge = \"v0\"\n[solver]\nintegrator = \"newton\"\n",
+                    "sheet.toml"));
+    for (int k = 0; k < 10; ++k) {
+        const StepReport report = next_step(s);
+        CHECK(report.converged);
+        CHECK(report.cg_iterations < 200);  // a solve or two, of 30
+    }
+}
+
+TEST_CASE("a run in which a solid lifts a cloth that rests in it is stopped with words") {
+    Simulation s = start_simulation(parse_scene(
+        "[clip]\nfps = 10\n[cloth]\nparticles = [11, 11]\nsize = [0.1, 0.1]\ncenter = [0, 0.01, 0]\n"
+        "[[solid]]\nshape = \"plane\"\noffset = 0.5\n",
+        "sheet.toml"));
+    try {
+        for (int k = 0; k < 12; ++k) next_record(s);
+    } catch (const SimulationError& stopped) {
+        CHECK(std::string(stopped.what()).find("it is lifted") != std::string::npos);
+    }
+}
