@@ -7,6 +7,7 @@
 
 #include "sim/mesh/mesh_cloth.hpp"
 #include "sim/mesh/placement.hpp"
+#include "sim/model/contact_model.hpp"
 #include "sim/model/mesh_links.hpp"
 #include "sim/model/mesh_springs.hpp"
 #include "sim/scene/random.hpp"
@@ -254,6 +255,8 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
         model.self_collision = fitting(*scene.self_collision, grids, model);
         find_mesh_neighbours(model);
     }
+    if (scene.self_collision || !scene.solids.empty())
+        model.contact = make_contact_model(scene, model, placement);
     model.spring_adjacency = !model.grids.empty() && model.grids.size() == model.cloths.size()
                                  ? adjacency_of(model.grids)
                                  : adjacency_of(model.size(), model.springs.i, model.springs.j);

@@ -66,6 +66,7 @@ struct Stitches {
 };
 
 struct ForceTerm;  // sim/terms/term.hpp
+struct ContactModel;  // sim/model/contact_model.hpp
 
 /// Everything that does not change while the cloth moves: topology, rest shape, masses, springs, pins, and
 /// the effects that the scene calls for. Const once built.
@@ -82,9 +83,14 @@ struct ClothModel {
     std::vector<Solid> solids;                    ///< what the cloth meets; empty: no contact at all
     std::optional<Wind> wind;                     ///< absent: no air at all
     std::optional<SelfCollision> self_collision;  ///< absent: none; what the scene leaves open is filled in
+    std::shared_ptr<const ContactModel> contact;  ///< null without self-collision and solids
     Neighbours neighbours;                        ///< of particles of meshes; empty without self-collision
     std::vector<const ForceTerm*> further_terms;  ///< forces besides those of scenes; not owned
     std::size_t size() const { return mass.size(); }
+    /// Whether cloth meets cloth between surfaces.
+    bool by_surfaces() const {
+        return self_collision && self_collision->method == CollisionMethod::surface;
+    }
 };
 
 /// The cells of all cloths, for the air.

@@ -45,6 +45,10 @@ struct StepReport {
     /// Temporary springs of self-collision; they count as implicit or explicit too.
     std::uint32_t self_contacts = 0;
     double self_distance = 0;  ///< m, least between particles that may collide, at most the thickness
+    /// Edges that pass through faces or solids, and how deep cloth is in a solid [m], at the end of a frame's
+    /// last step; only where the scene has solids or self-collision.
+    std::optional<std::uint64_t> crossings;
+    double deepest = 0;
     double max_strain = 0, p99_strain = 0;  ///< of stretch springs, (l − L)/L
     double lowest = 0;                      ///< m, lowest particle's y
     double kinetic = 0, potential = 0;      ///< J; gravity's zero is at y = 0

@@ -75,6 +75,8 @@ void members(Archive& archive, Record& r) {
         archive(s.contacts);
         archive(s.self_contacts);
         archive(s.self_distance);
+        archive(s.crossings);
+        archive(s.deepest);
         archive(s.max_strain);
         archive(s.p99_strain);
         archive(s.lowest);

@@ -31,6 +31,8 @@ std::string advice_for(Criterion criterion, const StepOptions& options, double h
             return fmt::format(
                 "raise solver.max_iterations (now {}), take a smaller step, or soften what is stiffest",
                 options.solve.max_iterations);
+        case Criterion::pinched:
+            break;  // says it itself
     }
     return "";
 }
@@ -155,7 +157,7 @@ struct Judgement {
 }  // namespace
 
 const char* criterion_name(Criterion criterion) {
-    constexpr const char* names[] = {"not_finite", "strain", "energy", "unsolved"};
+    constexpr const char* names[] = {"not_finite", "strain", "energy", "unsolved", "pinched"};
     return names[static_cast<int>(criterion)];
 }
 
@@ -183,7 +185,7 @@ Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
     const double spent = report.kinetic + springs + weight * size;
     guard.energy = height + 2.0 * spent;
     guard.total = report.kinetic + report.potential;
-    if (!forces_hide_energy(model)) guard.rounding = rounding_share * spent;
+    if (!forces_hide_energy(model) && !model.by_surfaces()) guard.rounding = rounding_share * spent;
     return guard;
 }
 

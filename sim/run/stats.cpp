@@ -70,6 +70,12 @@ constexpr StatsColumn columns[] = {
     {"self_distance",
      "least distance of particles that may collide, at most the thickness [m]; 0 without self-collision",
      [](R r) { return fmt::format("{}", r.self_distance); }},
+    {"crossings",
+     "edges of cloth that pass through cloth or a solid, counted at frames; empty elsewhere, and without "
+     "self-collision and solids",
+     [](R r) { return r.crossings ? fmt::format("{}", *r.crossings) : std::string(); }},
+    {"deepest", "how far cloth is inside a solid, at frames [m]; empty as `crossings`",
+     [](R r) { return r.crossings ? fmt::format("{}", r.deepest) : std::string(); }},
     {"max_strain", "largest (l - L)/L of the stretch springs",
      [](R r) { return fmt::format("{}", r.max_strain); }},
     {"p99_strain", "its 99th percentile", [](R r) { return fmt::format("{}", r.p99_strain); }},

@@ -265,10 +265,15 @@ struct Wind {
     SourcePlace place;
 };
 
+/// What touches what: vertices, edges and faces of the cloth; or particles alone (paper Sec. 2.2).
+enum class CollisionMethod { surface, particles };
+
 struct SelfCollision {
-    double thickness = 0;  ///< m; 0: from the particle spacing
-    double stiffness = 0;  ///< N/m of a temporary spring; 0: from the material
-    double damping = 0;    ///< N·s/m
+    CollisionMethod method = CollisionMethod::surface;
+    double thickness = 0;  ///< m; 0: from each cloth's density; of particles from their spacing
+    double stiffness = 0;  ///< N/m of a contact; 0: from the material
+    double damping = 0;    ///< N·s/m; 0: a fifth of critical
+    Friction friction;     ///< between layers; between surfaces only
     SourcePlace place;
 };
 

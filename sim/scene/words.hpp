@@ -26,6 +26,7 @@ inline constexpr std::string_view preconditioner_words[] = {
     "ic0",  "auto",     "stencil-block", "multigrid",         "aggregation"};
 inline constexpr std::string_view bend_treatment_words[] = {"scheme", "explicit"};
 inline constexpr std::string_view activation_words[] = {"start", "predicted", "resolve", "ahead"};
+inline constexpr std::string_view collision_method_words[] = {"surface", "particles"};
 inline constexpr std::string_view weave_words[] = {"plain", "twill", "checks", "stripes", "solid"};
 inline constexpr std::string_view show_words[] = {"components", "splitting", "strain", "velocity", "contact"};
 
@@ -55,6 +56,9 @@ constexpr Words words_of(BendTreatment) {
 }
 constexpr Words words_of(Activation) {
     return activation_words;
+}
+constexpr Words words_of(CollisionMethod) {
+    return collision_method_words;
 }
 constexpr Words words_of(Weave) {
     return weave_words;

@@ -31,9 +31,22 @@ void describe(Fields& f, Camera::Key& key) {
 
 void describe(Fields& f, SelfCollision& self) {
     f.place(self.place);
-    f.number({"thickness", "m; 0: from the particle spacing"}, self.thickness, {0, 1, false, "m"});
-    f.number({"stiffness", "N/m; 0: from the material"}, self.stiffness, {0, 1e9, false, "N/m"});
-    f.number({"damping", "N·s/m"}, self.damping, {0, 1e6, false, "N·s/m"});
+    f.choice({"method", "what touches what: vertices, edges and faces of the cloth, or particles alone"},
+             self.method);
+    f.number(
+        {"thickness",
+         "m, at which layers touch; 0: that of cloth of 100 kg/m³, or 0.75 of the particle spacing where "
+         "particles touch"},
+        self.thickness, {0, 1, false, "m"});
+    f.number({"stiffness", "N/m of a contact; 0: the stiffest thread's"}, self.stiffness,
+             {0, 1e9, false, "N/m"});
+    f.number({"damping", "N·s/m of a contact; 0: a fifth of critical"}, self.damping,
+             {0, 1e6, false, "N·s/m"});
+    describe_friction(
+        f,
+        "between layers, where surfaces touch: a number, or {static, kinetic}; a number mu stands for "
+        "static mu, kinetic 0.8 mu",
+        self.friction);
 }
 
 void describe(Fields& f, Camera& camera) {

@@ -69,6 +69,41 @@ void remember(double h, const ClothState& state, const StepWorkspace& ws, ClothS
     }
 }
 
+// No surface passes through another on the way to the step's end; what is stopped moves accordingly.
+void stop_impacts(const ClothModel& model, double h, const ClothState& state, StepWorkspace& ws,
+                  ClothState& next, StepReport& report) {
+    StageTimer timer;
+    const std::vector<Vec3> free = next.x;
+    std::vector<std::uint8_t>& fixed = ws.contact.apart.fixed;
+    fixed.assign(model.size(), 0);
+    for (const Constraint& c : ws.constraints.all()) fixed[c.particle] = 1;
+    for (const Touch& touch : ws.contact.touches) fixed[touch.contact.particle] = 0;
+    const Apart apart =
+        keep_apart(model, state.x, ws.constraints, fixed, next.x, ws.contact.surfaces, ws.contact.apart);
+    if (!apart.kept) {
+        StepFailure failure;
+        failure.criterion = Criterion::pinched;
+        failure.step = state.step + 1;
+        failure.t = state.t;
+        failure.h = h;
+        failure.particles.assign(apart.particles.begin(), apart.particles.end());
+        failure.advice = "let the pins or solids leave the layers room between them";
+        std::swap(next, ws.before);
+        throw SimulationError(
+            fmt::format("step {} (from {:.6g} s, {:.6g} s long): what holds particle {} drives its cloth "
+                        "through other cloth; {}",
+                        failure.step, failure.t, h, apart.particles[0], failure.advice),
+            failure);
+    }
+    parallel_each(next.x.size(), [&](std::size_t p) {
+        const Vec3 change = (next.x[p] - free[p]) / ws.stage.h;
+        if (change.isZero(0)) return;
+        next.v[p] += change;
+        next.dv[p] += change;
+    });
+    timer.lap(report.times.collision);
+}
+
 }  // namespace
 
 void require_finite(std::span<const Vec3> v, const ClothState& state, double h) {
@@ -184,8 +219,11 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
         state.dv[p] = iterates ? Vec3(state.v[p] - before.v[p]) : ws.linear.dv[p];
         state.x[p] = base[p] + stage.h * state.v[p];
     });
-    if (!model.solids.empty())
+    if (!model.solids.empty()) {
         keep_outside(model.solids, ws.contact.poses, ws.constraints, h, state.x, state.v);
+        keep_edges_outside(model, ws.contact.poses, ws.constraints, h, ws.contact.surfaces, state.x, state.v);
+    }
+    if (model.by_surfaces()) stop_impacts(model, h, before, ws, state, report);
     if (scheme.multistep) remember(h, before, ws, state);
     timer.lap(report.times.advance);
 
@@ -194,6 +232,10 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     count_springs(couplings_of(model, ws), report);
     for (const ForcePlan::Term& planned : ws.plan.forces.terms) {
         if (planned.term->count) planned.term->count(ws.forces.memory, report);
+    }
+    if (model.by_surfaces()) {
+        report.self_contacts = static_cast<std::uint32_t>(ws.contact.surfaces.stencils.size());
+        report.self_distance = ws.contact.surfaces.least_distance;
     }
     finish_report(model, options, state, timer, ws, report);
     return report;

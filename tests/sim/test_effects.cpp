@@ -160,7 +160,7 @@ TEST_CASE("a tube starts unstretched and closes in u") {
     }
 }
 
-TEST_CASE("self-collision keeps two sheets apart, and without it they pass through each other") {
+TEST_CASE("self-collision between particles keeps two sheets apart, and without it they pass through each other") {
     const auto least = [](bool collide) {
         Scene scene;
         scene.cloths.push_back(sheet(15, 0.1));
@@ -169,7 +169,10 @@ TEST_CASE("self-collision keeps two sheets apart, and without it they pass throu
         Pin all;
         all.target = PinTarget::box;
         scene.cloths[1].pins.push_back(all);
-        if (collide) scene.self_collision = SelfCollision{};
+        if (collide) {
+            scene.self_collision = SelfCollision{};
+            scene.self_collision->method = CollisionMethod::particles;
+        }
         Simulation simulation = start_simulation(scene);
         double distance = 1;
         for (int k = 0; k < 100; ++k) {

@@ -30,6 +30,23 @@ namespace {
 // time.
 constexpr int pipeline_threads = 3;
 
+// Strain from which on a user wants to be told of it.
+constexpr double notable_strain = 0.2;
+
+// One line for each thing that a picture may hide.
+void print_notes(const nlohmann::ordered_json& totals) {
+    if (totals["max_strain"].get<double>() > notable_strain)
+        fmt::print("  note: a thread was {:.0f}% longer than at rest at {:.4g} s\n",
+                   100 * totals["max_strain"].get<double>(), totals["max_strain_at"].get<double>());
+    if (!totals.contains("crossings")) return;
+    if (totals["crossings"].get<std::uint64_t>() > 0)
+        fmt::print("  note: up to {} edges of cloth passed through cloth or solids (at {:.4g} s)\n",
+                   totals["crossings"].get<std::uint64_t>(), totals["crossings_at"].get<double>());
+    if (totals["deepest"].get<double>() > 0)
+        fmt::print("  note: cloth was up to {:.2g} mm inside a solid\n",
+                   1e3 * totals["deepest"].get<double>());
+}
+
 void print_summary(const OutputOptions& options, const RunFolder& folder,
                    const nlohmann::ordered_json& json) {
     if (options.json) {
@@ -44,6 +61,7 @@ void print_summary(const OutputOptions& options, const RunFolder& folder,
         fmt::print(", {:.1f}% fewer RVMs than whole", 100 * totals["rvm_saved"].get<double>());
     fmt::print("\n");
     for (const auto& warning : json["warnings"]) fmt::print("  note: {}\n", warning.get<std::string>());
+    print_notes(totals);
     if (json.contains("videos")) {
         for (const auto& video : json["videos"])
             fmt::print("  {}\n", (folder.root / video.get<std::string>()).string());
