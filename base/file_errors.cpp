@@ -1,6 +1,7 @@
 #include "base/file_errors.hpp"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <cerrno>
 #include <utility>
@@ -8,7 +9,14 @@
 namespace unravel {
 namespace {
 
-const char* advice(int error_number) {
+// "ulimit -f allows 10 kB here"
+std::string size_limit() {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "";
+    return fmt::format("; ulimit -f allows files of {} kB here: raise it", limit.rlim_cur / 1024);
+}
+
+std::string advice(int error_number) {
     switch (error_number) {
         case ENOSPC:
         case EDQUOT:
@@ -21,6 +29,8 @@ const char* advice(int error_number) {
             return "; its folder does not exist";
         case ENOTDIR:
             return "; a part of the path is a file, not a folder";
+        case EFBIG:
+            return size_limit();
         default:
             return "";
     }

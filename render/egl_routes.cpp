@@ -2,10 +2,15 @@
 
 #include <GL/gl.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cctype>
+#include <fstream>
+#include <thread>
 
 namespace unravel::render {
 
@@ -42,6 +47,30 @@ std::string gl_string(const Egl& egl, GLenum name) {
     const auto get = reinterpret_cast<decltype(&::glGetString)>(egl.GetProcAddress("glGetString"));
     const GLubyte* value = get ? get(name) : nullptr;
     return value ? reinterpret_cast<const char*>(value) : "";
+}
+
+// Mesa's compiler does not survive a limit on memory that it meets: LLVM ends the program. Address space that
+// a software context and pictures of 1280 × 720 were seen to take (Mesa 22.3, LLVM 15), besides stacks and
+// arenas of a thread per processor.
+constexpr double software_bytes = 1.3e9, software_bytes_per_thread = 8e7;
+constexpr unsigned most_software_threads = 16;
+
+// What it has taken once is not taken again.
+std::atomic<bool> software_runs{false};
+
+// In words, where a limit leaves too little; else empty.
+std::string too_little_memory() {
+    rlimit limit{};
+    if (software_runs || ::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "";
+    double pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const double left =
+        static_cast<double>(limit.rlim_cur) - pages * static_cast<double>(::sysconf(_SC_PAGESIZE));
+    const unsigned threads = std::min(most_software_threads, std::thread::hardware_concurrency());
+    const double needed = software_bytes + software_bytes_per_thread * threads;
+    if (left >= needed) return "";
+    return fmt::format("ulimit -v leaves {:.0f} MB, and Mesa's software rasteriser takes about {:.0f}",
+                       left / 1e6, needed / 1e6);
 }
 
 }  // namespace
@@ -125,8 +154,15 @@ std::unique_ptr<CurrentContext> reach(const Egl& egl, const Route& route, Render
     EGLint major = 0, minor = 0;
     // What needs no device has no access to lack: its driver is missing or damaged.
     const bool software = route.device < 0 || route.name.find("(software)") != route.name.npos;
+    if (software) {
+        attempt.reason = too_little_memory();
+        attempt.fix = "raise the limit: ulimit -v unlimited";
+        if (!attempt.reason.empty()) return nullptr;
+        attempt.fix.clear();
+    }
     if (!egl.Initialize(display, &major, &minor))
         return fail("eglInitialize", software ? reinstall_software : check_access);
+    if (software) software_runs = true;
     if (!egl.BindAPI(EGL_OPENGL_API)) return fail("eglBindAPI(EGL_OPENGL_API)", check_driver);
     if (!egl.has(display, "EGL_KHR_surfaceless_context")) {
         attempt.reason = "the display lacks EGL_KHR_surfaceless_context";

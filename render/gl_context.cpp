@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <utility>
 
@@ -45,6 +46,12 @@ std::string describe(const DeviceChoice& choice) {
 
 std::string list_failures(const std::vector<RendererAttempt>& attempts) {
     std::string text;
+    const auto same = [&](const RendererAttempt& attempt) {
+        return attempt.reason == attempts.front().reason && attempt.fix == attempts.front().fix;
+    };
+    // One cause, told once.
+    if (!attempts.empty() && std::ranges::all_of(attempts, same))
+        return fmt::format(" {}; {}", attempts.front().reason, attempts.front().fix);
     for (const RendererAttempt& attempt : attempts) {
         text += fmt::format("\n  {}: {}", attempt.route, attempt.reason);
         if (!attempt.fix.empty()) text += fmt::format("\n    try: {}", attempt.fix);

@@ -12,14 +12,15 @@
 namespace unravel::render {
 
 /// The video's ending chooses the container: .mp4 (H.264), .webm (VP9), .mkv (lossless RGB), .gif (256
-/// colours a frame). mp4 and webm are yuv420p, limited range, BT.709, converted so and tagged so.
+/// colours a frame). mp4 and webm are yuv420p, limited range, BT.709, converted so and tagged so. Players can
+/// jump to at least one frame in each second.
 struct VideoSettings {
-    int width = 1280, height = 720;  ///< even, 16 to 16,384
+    int width = 1280, height = 720;  ///< 16 to 16,384; even in an .mp4
     int fps_num = 30, fps_den = 1;   ///< frames per second as a fraction
     std::string codec;               ///< an encoder's name; empty: the first of the container's that opens
     int crf = -1;           ///< constant quality, smaller is better; −1: the encoder's entry in our table
     std::string preset;     ///< effort, by the encoder's name for it; empty: a fast one
-    int threads = 4;        ///< x264's bytes depend on it, so it never follows the machine
+    int threads = 4;        ///< bytes depend on it, so it never follows the machine
     bool alpha = false;     ///< keep the frames' alpha; .mkv only
     bool faststart = true;  ///< mp4: index before the frames, so that it plays while it loads
 };
@@ -31,7 +32,8 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// A size, a frame rate or an ending that no video can have, whatever encoders there are.
+/// A size, a frame rate or an ending that no video can have, or a quality or effort that the encoder does not
+/// know.
 class VideoSettingsError : public VideoError {
 public:
     using VideoError::VideoError;

@@ -102,7 +102,7 @@ VideoFacts read_video(const std::filesystem::path& file,
     const int index = av_find_best_stream(demuxer.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &codec, 0);
     require_read(index, file, log);
     const AVStream& stream = *demuxer->streams[index];
-    const VideoFacts facts = facts_of(stream, file);
+    VideoFacts facts = facts_of(stream, file);
     if (!each) return facts;
 
     const auto decoder = av::made<av::Codec>(avcodec_alloc_context3(codec));
@@ -111,9 +111,12 @@ VideoFacts read_video(const std::filesystem::path& file,
     require_read(avcodec_open2(decoder.get(), codec, nullptr), file, log);
     const auto packet = av::made<av::Packet>(av_packet_alloc());
     Frames frames(stream, each);
-    int result = 0;
+    int result = 0, packets = 0;
     while ((result = av_read_frame(demuxer.get(), packet.get())) >= 0) {
         if (packet->stream_index == index) {
+            // Nothing is shown across a keyframe of these codecs: as many frames go before it as packets do.
+            if (packet->flags & AV_PKT_FLAG_KEY) facts.keyframes.push_back(packets);
+            ++packets;
             require_read(avcodec_send_packet(decoder.get(), packet.get()), file, log);
             require_read(frames.drain(*decoder), file, log);
         }
@@ -123,6 +126,21 @@ VideoFacts read_video(const std::filesystem::path& file,
     require_read(avcodec_send_packet(decoder.get(), nullptr), file, log);
     require_read(frames.drain(*decoder), file, log);
     return facts;
+}
+
+int count_video_frames(const std::filesystem::path& file) {
+    const av::LogCapture log;
+    AVFormatContext* opened = nullptr;
+    if (avformat_open_input(&opened, ("file:" + file.string()).c_str(), nullptr, nullptr) < 0) return 0;
+    const av::Demuxer demuxer(opened);
+    const auto packet = av::made<av::Packet>(av_packet_alloc());
+    int frames = 0;
+    // There is one stream in what we write.
+    while (av_read_frame(demuxer.get(), packet.get()) >= 0) {
+        frames += packet->stream_index == 0 ? 1 : 0;
+        av_packet_unref(packet.get());
+    }
+    return frames;
 }
 
 }  // namespace unravel::render

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "base/file_errors.hpp"
 #include "render/image.hpp"
@@ -15,6 +16,8 @@ struct VideoFacts {
     std::string primaries, transfer, matrix, range;
     int width = 0, height = 0;
     double frames_per_second = 0;
+    std::vector<int>
+        keyframes;             ///< frames that can be jumped to, counted from 0; known once all were decoded
     bool index_first = false;  ///< mp4: the index (moov) lies before the frames (mdat)
 };
 
@@ -22,5 +25,8 @@ struct VideoFacts {
 /// which it is shown, in that order. Throws InputError with the file's name where it can't.
 VideoFacts read_video(const std::filesystem::path& file,
                       const std::function<void(const Image&, double seconds)>& each = {});
+
+/// Frames that a video holds, without decoding them; 0 where it can't be read.
+int count_video_frames(const std::filesystem::path& file);
 
 }  // namespace unravel::render

@@ -20,11 +20,11 @@ void require_written(int result, const std::filesystem::path& file, const av::Lo
 
 void check_video_settings(const std::filesystem::path& file, const VideoSettings& s) {
     const av::Container& container = av::container_for(file);
-    if (s.width % 2 != 0 || s.height % 2 != 0)
+    if (container.even && (s.width % 2 != 0 || s.height % 2 != 0))
         throw VideoSettingsError(
-            fmt::format("a video of {} × {} pixels can't be made: width and height must be even, since "
-                        "colour is stored for blocks of 2 × 2",
-                        s.width, s.height));
+            fmt::format("an {} of {} × {} pixels can't be made: width and height must be even, since "
+                        "colour is stored for blocks of 2 × 2; .webm, .mkv and .gif take any size",
+                        container.muxer, s.width, s.height));
     if (s.width < 16 || s.height < 16 || s.width > 16384 || s.height > 16384)
         throw VideoSettingsError(fmt::format(
             "a video of {} × {} pixels can't be made: each side must be 16 to 16384", s.width, s.height));

@@ -146,6 +146,7 @@ bool solve_on_grid(GridSystem& system, bool multigrid, std::uint32_t patience, c
         };
         if (!multigrid) recursive = advance(0);
         while (recursive > aim * target && out.iterations < until) {
+            heed(options.stop);
             if (multigrid) ws.multigrid.apply(ws.r.data(), ws.z.data());
             const double rho_next = multigrid ? cg.product() : recursive;
             beta = rho > 0 ? static_cast<float>(rho_next / rho) : 0.0f;

@@ -160,6 +160,7 @@ ComponentSolve solve_component(const Rows& rows, const SolveOptions& options) {
     double residual = rows.measure(residual_at), rho = residual > target ? begin() : 0.0;
 
     while (residual > target && result.iterations < static_cast<std::uint32_t>(options.max_iterations)) {
+        heed(options.stop);
         // Rounding may leave single precision without a direction to go.
         if (result.iterations >= until || (cycles && !(rho > 0))) {
             until = ever;

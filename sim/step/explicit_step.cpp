@@ -35,7 +35,7 @@ StepReport swept_step(const ClothModel& model, const StepOptions& options, doubl
     report.h = h;
     ClothState& next = ws.before;
     begin_next(state, h, next);
-    ws.sweep.run(model, state, substeps, next, ws.constraints, report.contacts);
+    ws.sweep.run(model, state, substeps, options.solve.stop, next, ws.constraints, report.contacts);
     require_finite(next.v, state, h);
     parallel_each(model.size(), [&](std::size_t p) { next.dv[p] = next.v[p] - state.v[p]; });
     timer.lap(report.times.advance);
@@ -64,6 +64,7 @@ StepReport substeps_in_turn(const ClothModel& model, const StepOptions& options,
     StepReport report;
     try {
         for (int k = 0; k < substeps; ++k) {
+            heed(options.solve.stop);
             StepOptions each = options;
             each.measure = options.measure && k + 1 == substeps;
             report = coupled_step(model, each, h / substeps, state, ws);

@@ -76,7 +76,7 @@ StepOptions step_options(const Solver& solver) {
     options.activation = solver.activation;
     options.activation_band = solver.activation_band;
     options.substeps = solver.substeps;
-    options.solve = {solver.preconditioner, solver.tolerance, solver.max_iterations};
+    options.solve = {solver.preconditioner, solver.tolerance, solver.max_iterations, nullptr};
     options.decompose = solver.decompose;
     return options;
 }
@@ -125,6 +125,7 @@ ClothState initial_state(const Placement& placement) {
 
 StepReport step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                 StepWorkspace& ws) {
+    heed(options.solve.stop);
     if (options.integrator == Integrator::automatic)
         return step(model, choose_integrator(model, options, h, ws), h, state, ws);
     // `explicit` has no system, so that its steps can be many, short, and fused.

@@ -54,6 +54,26 @@
     canvas.dispatchEvent(new PointerEvent('pointerdown', pointer));
     check('a click at a plot’s end goes to the last frame', number() === end);
 
+    const wide = document.createElement('section');
+    document.getElementById('plots').before(wide);
+    wide.style.width = '500px';
+    makePlots(wide, [0, 1, 2], {rvm: [null, 5200000, 987654321], lowest: [-1, -0.5, 2000000]}, () => {});
+    const labels = [...wide.querySelectorAll('.dygraph-axis-label-y')];
+    check('labels of an axis beyond a million are whole',
+          labels.some((label) => /,000,000$/.test(label.textContent)) &&
+          labels.every((label) => {
+            const text = document.createRange();
+            text.selectNodeContents(label);
+            const inner = text.getBoundingClientRect(), outer = label.parentElement.getBoundingClientRect();
+            return inner.left >= wide.getBoundingClientRect().left && inner.width <= outer.width;
+          }));
+    wide.remove();
+    dispatchEvent(new Event('beforeprint'));
+    check('plots are drawn for paper', [...document.querySelectorAll('#plots .canvas canvas')].every(
+      (canvas) => parseFloat(canvas.style.width) === 640));
+    check('what is folded is open on paper', [...document.querySelectorAll('details')].every((part) => part.open));
+    dispatchEvent(new Event('afterprint'));
+
     const jump = document.querySelector('#jumps button');
     jump.click();
     check('a jump goes to its frame', number() === Number(jump.dataset.frame));

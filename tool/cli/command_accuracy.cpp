@@ -41,8 +41,9 @@ void draw(const AccuracyStudy& study, CostAxis axis, const std::filesystem::path
 }
 
 std::string caption_of(const AccuracyPoint& point, const AccuracyStudy& study) {
-    return fmt::format("{}, steps of 1/{} s: {:.2g} s per second", point.setting.method(),
-                       point.setting.steps_per_frame * study.scene.clip.fps, point.median() / study.window());
+    return fmt::format("{}, steps of {} s: {:.2g} s per second", point.setting.method(),
+                       step_text(study.scene.clip.fps, point.setting.steps_per_frame),
+                       point.median() / study.window());
 }
 
 // The cheapest setting within the error beside the most accurate one, as far into the clip as the budget
@@ -137,22 +138,22 @@ int command_accuracy(const Options& options) {
         if (options.cluster.submit)
             return do_on_cluster(options, accuracy_cluster_work(scene, root, options.force));
         if (options.reference)
-            return study_reference(scene, root, budget, keep_on) ? exit_done : exit_interrupted;
+            return study_reference(scene, root, budget, keep_on) ? exit_done : InterruptWatch::exit_code();
         if (options.point >= 0)
-            return time_accuracy_point(scene, root, options.point, keep_on) ? exit_done : exit_interrupted;
+            return time_accuracy_point(scene, root, options.point, keep_on) ? exit_done
+                                                                            : InterruptWatch::exit_code();
     }
 
     std::string missing;
     AccuracyStudy study = options.collect ? collect_accuracy(scene, root, missing)
                                           : study_accuracy(scene, root, budget, keep_on);
     if (study.points.empty() && missing.empty()) {
-        if (keep_on())
-            fmt::print(
-                stderr,
-                "unravel: {:g} minutes ended before one point was timed; the same command goes on, with "
-                "--budget for more at once\n",
-                options.budget);
-        return exit_interrupted;
+        if (!keep_on()) return InterruptWatch::exit_code();
+        fmt::print(stderr,
+                   "unravel: {:g} minutes ended before one point was timed; the same command goes on, with "
+                   "--budget for more at once\n",
+                   options.budget);
+        return exit_simulation;
     }
     const bool same_processor = study.points.empty() || conclude(study, root, options);
     if (!missing.empty())
@@ -190,7 +191,7 @@ int command_accuracy(const Options& options) {
     } else if (!options.quiet) {
         print_files(files);
     }
-    if (!keep_on()) return exit_interrupted;
+    if (!keep_on()) return InterruptWatch::exit_code();
     return same_processor ? exit_done : exit_simulation;
 }
 

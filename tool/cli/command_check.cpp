@@ -11,41 +11,15 @@
 #include "sim/scene_file/load.hpp"
 #include "sim/step/choose_integrator.hpp"
 #include "sim/step/explicit_limit.hpp"
+#include "tool/base/machine.hpp"
 #include "tool/base/options.hpp"
 #include "tool/base/progress.hpp"
+#include "tool/cli/forecast.hpp"
 #include "tool/picture/view.hpp"
 
 namespace unravel::tool {
 
 namespace {
-
-// Rough cost on one 2.4 GHz server core, fitted to the scenes that ship: within a factor of two of each.
-// Seconds per particle and step:
-constexpr double grid_step = 0.6e-6, mesh_step = 2.6e-6;  // springs and solve
-constexpr double contact_step = 0.5e-6;                   // with solids of a closed form
-constexpr double mesh_contact_step = 3.5e-6;              // with meshes
-constexpr double self_collision_step = 0.8e-6;
-// Seconds per frame of 1280 × 720, both views with PNG and video:
-constexpr double frame_pictures = 0.11;
-constexpr double bytes_per_particle = 1900;
-
-double step_seconds(const Scene& scene, const ClothModel& model) {
-    double seconds = 0;
-    double contact = scene.self_collision ? self_collision_step : 0;
-    if (!scene.solids.empty()) {
-        const bool mesh = std::any_of(scene.solids.begin(), scene.solids.end(),
-                                      [](const Solid& solid) { return solid.shape == Shape::mesh; });
-        contact += mesh ? mesh_contact_step : contact_step;
-    }
-    for (const ClothPatch& cloth : model.cloths)
-        seconds += cloth.count() * (contact + (cloth.grid() ? grid_step : mesh_step));
-    return seconds;
-}
-
-double picture_seconds(const Scene& scene) {
-    const double area = static_cast<double>(scene.clip.size[0]) * scene.clip.size[1];
-    return scene.clip.frames() * frame_pictures * area / (1280.0 * 720.0);
-}
 
 // Two digits, and never more than it.
 double round_down(double step) {
@@ -61,10 +35,8 @@ int command_check(const Options& options) {
     Simulation simulation = start_simulation(scene);
     require_explicit_stability(simulation.model, simulation.options, scene.solver.step);
     const std::vector<Effect> effects = list_effects(scene);
-    const double n = static_cast<double>(simulation.model.size());
-    const long steps = static_cast<long>(simulation.steps_per_frame) * (scene.clip.frames() - 1);
-    const double seconds = static_cast<double>(steps) * step_seconds(scene, simulation.model);
-    const double pictures = picture_seconds(scene);
+    const Forecast expected = forecast(scene, simulation);
+    const MemoryRoom room = memory_room();
     BendLimit limit;
     limit_bend(simulation.model.bends, simulation.model.mass, scene.solver.step, limit);
 
@@ -72,10 +44,11 @@ int command_check(const Options& options) {
         nlohmann::ordered_json json{{"scene", scene.name},
                                     {"particles", simulation.model.size()},
                                     {"frames", scene.clip.frames()},
-                                    {"steps", steps},
-                                    {"estimated_bytes", n * bytes_per_particle},
-                                    {"estimated_seconds", seconds},
-                                    {"estimated_picture_seconds", pictures},
+                                    {"steps", expected.steps},
+                                    {"estimated_bytes", expected.bytes},
+                                    {"memory_room", room.bytes},
+                                    {"estimated_seconds", expected.seconds},
+                                    {"estimated_picture_seconds", expected.picture_seconds},
                                     {"bend_springs_limited", limit.limited}};
         for (const Effect& e : effects) json["effects"][e.name] = {{"on", e.on}, {"because", e.because}};
         fmt::print("{}\n", json.dump(2));
@@ -86,10 +59,16 @@ int command_check(const Options& options) {
                simulation.model.springs.stretch_count,
                simulation.model.springs.size() - simulation.model.springs.stretch_count,
                simulation.model.bends.size());
-    fmt::print("  {} frames at {} per second, {} steps of {} s\n", scene.clip.frames(), scene.clip.fps, steps,
-               scene.solver.step);
-    fmt::print("  about {:.0f} MB of memory, on one core {} of simulation and {} of pictures\n",
-               n * bytes_per_particle / 1e6, duration_text(seconds), duration_text(pictures));
+    fmt::print("  {} frames at {} per second, {} steps of {} s\n", scene.clip.frames(),
+               rate_text(scene.clip.fps), expected.steps, scene.solver.step);
+    fmt::print("  about {:.0f} MB of memory, on one core {}{} of simulation and {} of pictures\n",
+               expected.bytes / 1e6, expected.longer ? "more than " : "", duration_text(expected.seconds),
+               duration_text(expected.picture_seconds));
+    if (const auto [width, height] = scene.clip.size; width % 2 != 0 || height % 2 != 0)
+        fmt::print("  note: {} × {} is no size for an mp4, which has even ones: --video webm, mkv or gif\n",
+                   width, height);
+    if (expected.bytes > room.bytes)
+        fmt::print("  note: that is more memory than there is: {}\n", room.told());
     if (scene.solver.integrator == Integrator::automatic) {
         const IntegratorCosts costs =
             count_costs(simulation.model, simulation.options, scene.solver.step, simulation.ws);

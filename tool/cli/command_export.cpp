@@ -49,9 +49,7 @@ int command_export(const Options& options) {
                                       why_unusable(run, frames, hash)));
     ExportSource source{model, {}, clip.first, std::min(clip.last, frames - 1), scene.clip.fps, {}, {}};
     for (const ClothPatch& patch : model.cloths) source.surfaces.push_back(surface_of(patch));
-    source.read = [&](int frame) {
-        return read_record(run.record(frame), hash, model.size(), model.springs.size());
-    };
+    source.read = [&](int frame) { return read_frame(run, frame, hash, model.size(), model.springs.size()); };
     const std::string own_name = std::filesystem::weakly_canonical(run.root).filename().string();
     const std::string name = own_name.empty() ? "unravel" : own_name;
     Progress progress(name, source.frames(), options.quiet || options.json);
@@ -68,7 +66,7 @@ int command_export(const Options& options) {
     progress.finish();
     if (options.json) {
         nlohmann::ordered_json json{{"format", options.format},     {"units", "metres"},
-                                    {"axes", "right-handed, y up"}, {"fps", source.fps},
+                                    {"axes", "right-handed, y up"}, {"fps", rate_json(source.fps)},
                                     {"first", source.first},        {"last", source.last}};
         for (const auto& file : written) json["files"].push_back(file.string());
         fmt::print("{}\n", json.dump(2));
@@ -76,9 +74,9 @@ int command_export(const Options& options) {
         fmt::print("  {}{}\n  metres, right-handed, y up; frames {}-{} at {} per second\n",
                    written.front().string(),
                    written.size() > 1 ? fmt::format(" … {}", written.back().filename().string()) : "",
-                   source.first, source.last, source.fps);
+                   source.first, source.last, rate_text(source.fps));
     }
-    return InterruptWatch::requested() ? exit_interrupted : exit_done;
+    return InterruptWatch::requested() ? InterruptWatch::exit_code() : exit_done;
 }
 
 }  // namespace unravel::tool

@@ -13,6 +13,7 @@
 #include "tool/base/progress.hpp"
 #include "tool/cli/frame_ranges.hpp"
 #include "tool/cli/render_options.hpp"
+#include "tool/cli/render_place.hpp"
 #include "tool/folder/folder_lock.hpp"
 #include "tool/picture/clip.hpp"
 #include "tool/picture/turntable.hpp"
@@ -43,7 +44,7 @@ int draw_turntable(const Options& options, const Scene& scene, const ClothModel&
                    const Placement& placement, const std::array<RunFolder, 2>& from_to,
                    const ClipOptions& clip_options, int frame, std::uint64_t hash) {
     const auto& [cached, folder] = from_to;
-    const FrameRecord record = read_record(cached.record(frame), hash, model.size(), model.springs.size());
+    const FrameRecord record = read_frame(cached, frame, hash, model.size(), model.springs.size());
     Progress progress(scene.name, clip_options.last + 1, options.quiet);
     const FrameSource turn = turntable_source(clip_options, record);
     const FrameSource source = [&]() -> std::optional<FrameRecord> {
@@ -53,13 +54,12 @@ int draw_turntable(const Options& options, const Scene& scene, const ClothModel&
                                         [&](int done) { progress.show(done + 1, 0); });
     progress.finish();
     print_files(options, folder, clip_options, report);
-    return InterruptWatch::requested() ? exit_interrupted : exit_done;
+    return InterruptWatch::requested() ? InterruptWatch::exit_code() : exit_done;
 }
 
 }  // namespace
 
 int command_render(const Options& options) {
-    const InterruptWatch watch;
     const RunFolder cached{options.scene};
     if (!std::filesystem::exists(cached.scene())) {
         throw FolderError(fmt::format(
@@ -76,7 +76,8 @@ int command_render(const Options& options) {
     const bool turns = options.turntable > 0;
     const int still = options.still >= 0 ? options.still : scene.clip.frames() - 1;
     if (turns) make_turntable(scene, clip_options, options.turntable, still);
-    const RunFolder folder{options.output.empty() ? cached.root : options.output};
+    const RunFolder folder = place_of_render(options, cached, scene, clip_options);
+    clip_options.keep_longer = options.output.empty();
     if (turns && (options.cluster.submit || options.collect || options.point >= 0))
         throw UsageError("--turntable is drawn on one machine: it does not go with --slurm");
     if (options.cluster.submit) return send_ranges(options, scene, cached, folder, clip_options);
@@ -100,6 +101,8 @@ int command_render(const Options& options) {
                                       cached.root.string(), frames, clip_options.first,
                                       why_unusable(cached, frames, hash)));
     }
+    // Until here a signal ends the program: there is nothing to finish.
+    const InterruptWatch watch;
     if (turns)
         return draw_turntable(options, scene, model, placement, {cached, folder}, clip_options,
                               std::min(still, frames - 1), hash);
@@ -109,7 +112,7 @@ int command_render(const Options& options) {
     PageRecorder recorder(model, folder.root);
     SpooledList<StepReport> spooled(folder.root);
     const auto read = [&] {
-        FrameRecord record = read_record(cached.record(next++), hash, model.size(), model.springs.size());
+        FrameRecord record = read_frame(cached, next++, hash, model.size(), model.springs.size());
         recorder.see(record);
         spooled.append(record.reports);
         return record;
@@ -126,25 +129,36 @@ int command_render(const Options& options) {
     if (range_only) {
         if (last < clip_options.last)
             throw FolderError(fmt::format("'{}' holds no usable frame {}", cached.root.string(), last + 1));
-        return InterruptWatch::requested() ? exit_interrupted : exit_done;
+        return InterruptWatch::requested() ? InterruptWatch::exit_code() : exit_done;
     }
-    // The page shows the whole run, also where only some frames were drawn anew.
-    while (next < frames) read();
-    std::vector<StepReport> reports = spooled.read_all();
-    if (std::filesystem::exists(cached.stats()))
-        take_times(read_whole_text(cached.stats(), largest_stats), reports);
+    const auto write_page = [&](const nlohmann::ordered_json& run) {
+        std::vector<StepReport> reports = spooled.read_all();
+        if (std::filesystem::exists(cached.stats()))
+            take_times(read_whole_text(cached.stats(), largest_stats), reports);
+        write_report_page(scene, model, folder, recorder, reports, previews, page_facts(run));
+    };
     nlohmann::ordered_json run = left;
     run["renderer"] = {{"name", report.renderer}, {"why", report.renderer_summary}};
     run["encoder"] = report.encoders;
-    write_report_page(scene, model, folder, recorder, reports, previews, page_facts(run));
-    print_files(options, folder, clip_options, report);
-    if (!options.quiet) {
-        fmt::print("  {}\n", folder.report().string());
+    if (InterruptWatch::requested()) {
+        if (!options.quiet)
+            fmt::print("interrupted: {} of {} frames drawn{}{}\n", report.frames,
+                       last - clip_options.first + 1, report.kept.empty() ? "" : "; ", report.kept);
+        run["status"] = "interrupted";
+        // The page of a clip that stays is as true as before.
+        if (report.kept.empty()) write_page(run);
+        return InterruptWatch::exit_code();
     }
-    if (InterruptWatch::requested()) return exit_interrupted;
+    // The page shows the whole run, also where only some frames were drawn anew.
+    while (next < frames) read();
+    write_page(run);
+    print_files(options, folder, clip_options, report);
+    if (!options.quiet)
+        fmt::print("{}  {}\n", report.kept.empty() ? "" : "  " + report.kept + "\n",
+                   folder.report().string());
     // A state that is damaged hides the frames from it on: named when all before it are drawn.
     if (last < clip_options.last && std::filesystem::exists(cached.record(frames)))
-        read_record(cached.record(frames), hash, model.size(), model.springs.size());
+        read_frame(cached, frames, hash, model.size(), model.springs.size());
     return exit_done;
 }
 

@@ -56,7 +56,6 @@ void print_summary(const Options& options, const RunFolder& folder, const nlohma
 
 int make_run(const Options& options, bool pictures) {
     const auto begin = std::chrono::steady_clock::now();
-    const InterruptWatch watch;
     Scene scene = load_scene(options.scene, options.overrides);
     const RunFolder folder{options.output.empty() ? std::filesystem::path("output") / scene.name
                                                   : options.output};
@@ -72,6 +71,8 @@ int make_run(const Options& options, bool pictures) {
     const Existing existing = options.force    ? Existing::replace
                               : options.resume ? Existing::resume
                                                : Existing::refuse;
+    // Until here a signal ends the program: there is nothing to finish.
+    const InterruptWatch watch;
     const FolderLock lock(folder.root);
     const std::uint64_t hash = open_run(folder, scene, existing, clip_options.textures);
 
@@ -117,6 +118,8 @@ int make_run(const Options& options, bool pictures) {
         write_report_page(scene, simulation.model, folder, recorder, source.reports(), previews,
                           page_facts(json));
         print_summary(options, folder, json);
+        if (report && !report->kept.empty() && !options.quiet && !options.json)
+            fmt::print("  {}\n", report->kept);
     };
     if (pictures) {
         Placement placement;
@@ -131,7 +134,7 @@ int make_run(const Options& options, bool pictures) {
         throw *failure;
     }
     conclude(InterruptWatch::requested() ? "interrupted" : "complete");
-    return InterruptWatch::requested() ? exit_interrupted : exit_done;
+    return InterruptWatch::requested() ? InterruptWatch::exit_code() : exit_done;
 }
 
 }  // namespace

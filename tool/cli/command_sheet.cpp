@@ -54,8 +54,7 @@ std::array<Image, 2> draw_entry(const Entry& entry, const Options& options, std:
     ComponentColors colors;
     DrawFrame drawing;
     for (int k = 0; k <= frame; ++k) {
-        const FrameRecord record =
-            read_record(entry.folder.record(k), hash, model.size(), model.springs.size());
+        const FrameRecord record = read_frame(entry.folder, k, hash, model.size(), model.springs.size());
         const std::vector<Rgb>& components = colors.assign(record.component, edges);
         if (k == frame) make_draw_frame(scene, model, record, components, drawing, clip.views.front().camera);
     }

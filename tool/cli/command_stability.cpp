@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/whole_file.hpp"
-#include "tool/base/interrupt.hpp"
 #include "tool/base/options.hpp"
 #include "tool/cli/render_options.hpp"
 #include "tool/cluster/cluster.hpp"
@@ -176,7 +175,6 @@ int do_all(const Options& options, const Study& study) {
     if (options.pictures) context.emplace(parse_device_choice(options.device));
     std::vector<HardLine> lines;
     for (const HardCase& hard : study.cases) {
-        if (InterruptWatch::requested()) return exit_interrupted;
         lines.push_back(do_case(hard, study, context));
         if (silent) continue;
         fmt::print("{}\n", terminal_line(lines.back()));
@@ -184,7 +182,6 @@ int do_all(const Options& options, const Study& study) {
     }
     std::vector<StabilityMap> maps;
     for (const std::string& integrator : study.maps) {
-        if (InterruptWatch::requested()) break;
         maps.push_back(make_stability_map(study.map_scene(), integrator));
         if (!silent) tell(maps.back());
     }
@@ -194,7 +191,6 @@ int do_all(const Options& options, const Study& study) {
 }  // namespace
 
 int command_stability(const Options& options) {
-    const InterruptWatch watch;
     const Study study = study_of(options);
     if (options.cluster.submit) return send(options, study);
     if (options.collect) return collect(options, study);

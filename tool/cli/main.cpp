@@ -67,7 +67,8 @@ void add_picture_options(CLI::App& command, Options& o) {
                     "mp4, webm, mkv (lossless), gif or none (default: mp4; mkv where --transparent)")
         ->check(CLI::IsMember({"mp4", "webm", "mkv", "gif", "none"}));
     command.add_option("--codec", o.codec, "this encoder and no other");
-    command.add_option("--crf", o.crf, "quality of the video, smaller is better")->check(CLI::Range(0, 63));
+    command.add_option("--crf", o.crf, "quality of the video, smaller is better")
+        ->check(CLI::NonNegativeNumber);
     command.add_option("--preset", o.preset, "the encoder's effort");
     command.add_flag("--pictures,!--no-pictures", o.pictures, "write PNG frames (default: yes)");
 }

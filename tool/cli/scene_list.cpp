@@ -152,7 +152,7 @@ int do_here(const Options& options, const std::vector<ListedScene>& list, int (*
     std::vector<std::string> failed;
     for (const ListedScene& listed : list) {
         const int ended = guarded([&] { return one(options_for(options, listed)); });
-        if (ended == exit_interrupted) return ended;
+        if (ended > exit_signal) return ended;
         if (ended != exit_done) failed.push_back(listed.scene.name);
         if (code == exit_done) code = ended;
     }

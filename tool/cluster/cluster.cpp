@@ -52,7 +52,8 @@ std::vector<JobScript> scripts_of(const Options& options, const ClusterWork& wor
          "missing is named.",
          command + " --collect",
          {},
-         false});
+         false,
+         true});
     return scripts;
 }
 
@@ -113,7 +114,7 @@ int wait_and_tell(const Options& options, const ClusterWork& work, const std::ve
                    "the jobs go on; `scancel {}` ends those that wait and sends those that run back "
                    "to wait\n",
                    fmt::join(jobs, " "));
-        return exit_interrupted;
+        return InterruptWatch::exit_code();
     }
     const fs::path log = job_log(results, work.undivided ? work.name : work.name + "_collect");
     if (fs::exists(log)) fmt::print("{}", read_whole_text(log, largest_log));

@@ -176,7 +176,7 @@ Written export_glb(const ExportSource& source, const std::filesystem::path& fold
     if (targets > 0 && json.contains("meshes")) {
         const int times = layout.accessor(
             frames, "SCALAR", 4, float_type,
-            {{"min", {0.0}}, {"max", {static_cast<float>(static_cast<double>(targets) / source.fps)}}});
+            {{"min", {0.0}}, {"max", {static_cast<float>(source.fps.time_of(static_cast<int>(targets)))}}});
         const int weights = layout.accessor(frames * targets, "SCALAR", 4, float_type);
         Json animation{{"name", name}, {"samplers", Json::array({{{"input", times}, {"output", weights}}})}};
         for (std::size_t m = 0; m < json["meshes"].size(); ++m) {
@@ -225,7 +225,7 @@ Written export_glb(const ExportSource& source, const std::filesystem::path& fold
     if (json.contains("animations")) {
         std::vector<float> times(frames), weights(targets);
         for (std::size_t k = 0; k < frames; ++k)
-            times[k] = static_cast<float>(static_cast<double>(k) / source.fps);
+            times[k] = static_cast<float>(source.fps.time_of(static_cast<int>(k)));
         write(file, times);
         for (std::size_t k = 0; k < frames; ++k) {
             std::fill(weights.begin(), weights.end(), 0.0f);

@@ -142,7 +142,8 @@ std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing exi
         // Only what a run writes is removed; anything else in the folder is the user's.
         std::error_code error;
         // The scene goes last: what is half removed when the program ends still counts as a run.
-        for (const fs::path& path : {folder.cache(), folder.frames()}) fs::remove_all(path, error);
+        for (const fs::path& path : {folder.cache(), folder.frames(), folder.next()})
+            fs::remove_all(path, error);
         for (const char* ending : {".mp4", ".webm", ".mkv", ".gif"}) {
             for (std::size_t camera = 0; camera < scene.cameras.size(); ++camera) {
                 for (const Layout layout : all_layouts)
@@ -230,6 +231,15 @@ std::string why_unusable(const RunFolder& folder, int frame, std::uint64_t scene
         "scene.toml was changed since, or that version understood it differently; draw it with the "
         "version that made it, or simulate it again with `unravel run SCENE --force`",
         version_of_run(folder), version());
+}
+
+FrameRecord read_frame(const RunFolder& folder, int frame, std::uint64_t scene_hash, std::size_t particles,
+                       std::size_t springs) {
+    try {
+        return read_record(folder.record(frame), scene_hash, particles, springs);
+    } catch (const InputError&) {
+        throw InputError(folder.record(frame), why_unusable(folder, frame, scene_hash));
+    }
 }
 
 }  // namespace unravel::tool

@@ -23,6 +23,8 @@ struct RunFolder {
     std::filesystem::path cache() const { return root / "cache"; }
     std::filesystem::path frames() const { return root / "frames"; }
     std::filesystem::path failure() const { return root / "failure"; }
+    /// Where a clip is drawn that is to replace the one that is there, until it is whole.
+    std::filesystem::path next() const { return root / "next"; }
     std::filesystem::path record(int frame) const;
     /// `view`: its name, see ClipView.
     std::filesystem::path picture(const std::string& view, int frame) const;
@@ -63,6 +65,10 @@ int cached_frames(const RunFolder& folder, const Scene& scene, std::uint64_t sce
 /// it is damaged, or the scene asked for differs from the run's in more than its picture. For a frame that
 /// cached_frames() did not count.
 std::string why_unusable(const RunFolder& folder, int frame, std::uint64_t scene_hash);
+
+/// A frame of the cache. Throws InputError with why_unusable() where it can't be read.
+FrameRecord read_frame(const RunFolder& folder, int frame, std::uint64_t scene_hash, std::size_t particles,
+                       std::size_t springs);
 
 /// Hash of the scene as run. Only what changes the simulation counts.
 std::uint64_t scene_hash(const Scene& scene);

@@ -51,7 +51,7 @@ InspectedStep inspect_step(const Scene& scene, const RunFolder& folder, int fram
                                           folder.root.string(), k, frame));
         }
         const FrameRecord record =
-            read_record(folder.record(k), scene_hash(scene), model.size(), model.springs.size());
+            read_frame(folder, k, scene_hash(scene), model.size(), model.springs.size());
         colors.assign(record.component, edges);
         if (k + 1 == frame) restore(out.simulation, record);
     }

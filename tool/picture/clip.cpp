@@ -4,6 +4,7 @@
 
 #include <exception>
 
+#include "tool/base/interrupt.hpp"
 #include "tool/picture/studio.hpp"
 #include "tool/picture/view.hpp"
 
@@ -45,7 +46,7 @@ ClipReport make_clip(const Scene& scene, const ClothModel& model, const Placemen
                                tbb::make_filter<Passage*, Passage*>(filter_mode::serial_in_order, draw) &
                                tbb::make_filter<Passage*, Passage*>(filter_mode::parallel, write) &
                                tbb::make_filter<Passage*, void>(filter_mode::serial_in_order, encode));
-    ClipReport report = studio.finish();
+    ClipReport report = studio.finish(!stopped && !InterruptWatch::requested());
     if (stopped) std::rethrow_exception(stopped);
     return report;
 }

@@ -26,9 +26,10 @@ const views = data.views.map((view) => {
   const absent = make('div', 'no picture of this frame', {class: 'absent'});
   absent.style.aspectRatio = `${data.size[0]} / ${data.size[1]}`;
   link.append(image);
-  figure.append(link, absent, make('figcaption', `${view.name} view`));
+  const caption = make('figcaption');
+  figure.append(link, absent, caption);
   element('views').append(figure);
-  return {...view, image, link, absent};
+  return {...view, image, link, absent, caption};
 });
 
 function showViews(frame) {
@@ -39,6 +40,7 @@ function showViews(frame) {
     view.image.hidden = !there;
     view.absent.hidden = there;
     if (there) view.image.src = inline ? `data:image/webp;base64,${inline}` : file;
+    view.caption.textContent = `${view.name} view of frame ${frame.number}, ${frame.time.toFixed(3)} s`;
     view.image.alt = `${view.name} view of frame ${frame.number}`;
     if (there && file) view.link.href = file;
     else view.link.removeAttribute('href');
@@ -211,6 +213,10 @@ for (const effect of data.effects) {
   row.append(make('td', effect.name), make('td', effect.on ? 'on' : 'off'), make('td', effect.because));
   element('effects').tBodies[0].append(row);
 }
+if (data.warnings.length === 0) element('warnings').hidden = true;
+addEventListener('beforeprint', () => {
+  for (const details of document.querySelectorAll('details')) details.open = true;
+});
 element('scene').textContent = data.scene;
 for (const [name, value] of data.made) element('made').append(make('dt', name), make('dd', value));
 addJump('most components', 'components', shortNumber);

@@ -4,6 +4,8 @@
 // Colours that are told apart on light and dark pages and by the colour-blind (Okabe & Ito).
 const plotColors = ['#2f86c6', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#8c6cff', '#8f99a6', '#aa8b00'];
 
+const printedWidth = 640;  // px, as in report.css
+
 // What is plotted: titles, and columns of data.series by name.
 function plotList(series) {
   const stages = Object.keys(series).filter((name) => name.startsWith('ms_'));
@@ -29,6 +31,23 @@ function shortNumber(value) {
   if (value === null || value === undefined) return '–';
   if (Number.isInteger(value)) return value.toLocaleString('en');
   return Math.abs(value) >= 1e-3 || value === 0 ? String(Number(value.toPrecision(4))) : value.toExponential(2);
+}
+
+// For axes: whole up to a thousand million.
+function axisNumber(value) {
+  return Math.abs(value) >= 1e10 ? value.toExponential(1) : shortNumber(value);
+}
+
+// Room for the labels of an axis that reaches from 0 to the greatest of these values and a tick beyond [px].
+function labelWidth(columns, stacked) {
+  const sums = columns[0].map((_, k) => columns.reduce((sum, column) => sum + Math.abs(column[k] || 0), 0));
+  const most = Math.max(...(stacked ? sums : columns.flat().map((value) => Math.abs(value || 0))));
+  const least = Math.min(0, ...columns.flat().map((value) => value || 0));
+  const pen = document.createElement('canvas').getContext('2d');
+  pen.font = '12px sans-serif';
+  const longest = Math.max(...[most, 1.2 * most, most / 5, least].map(
+    (value) => pen.measureText(axisNumber(Number(value.toPrecision(2)))).width));
+  return Math.max(52, Math.ceil(longest) + 12);
 }
 
 // Makes all plots in `parent`. `numbers` are the frames' numbers; `seek(index)` is called as a plot is clicked or
@@ -64,7 +83,13 @@ function makePlots(parent, numbers, series, seek) {
       strokeWidth: 1.6,
       xRangePad: 4,
       highlightCircleSize: 0,
-      axes: {x: {drawGrid: false}, y: {axisLabelWidth: 52, axisLabelFormatter: shortNumber}},
+      axes: {
+        x: {drawGrid: false},
+        y: {
+          axisLabelWidth: labelWidth(spec.names.map((name) => series[name]), spec.stacked),
+          axisLabelFormatter: axisNumber,
+        },
+      },
       ...read(),
     });
     const cursor = document.createElement('div');
@@ -110,5 +135,12 @@ function makePlots(parent, numbers, series, seek) {
   };
   // dygraphs follow the window's width; the cursors have to follow them.
   addEventListener('resize', () => setTimeout(() => show(shown), 100));
+  // On paper all are as wide as report.css says, and drawn for that.
+  const redraw = (width) => {
+    for (const {graph, canvas} of plots) graph.resize(width ?? canvas.clientWidth, canvas.clientHeight);
+    show(shown);
+  };
+  addEventListener('beforeprint', () => redraw(printedWidth));
+  addEventListener('afterprint', () => redraw());
   return show;
 }

@@ -9,7 +9,7 @@ TEST_CASE("all problems of a scene are shown together, with line, caret and hint
     const std::string text =
         "# a broken scene\n"
         "[clip]\n"
-        "size = [1279, 720]\n"
+        "size = [8, 720]\n"
         "fps = 25\n"
         "\n"
         "[cloth]\n"
@@ -28,10 +28,9 @@ TEST_CASE("all problems of a scene are shown together, with line, caret and hint
     }
     CHECK(
         shown ==
-        "scenes/broken.toml:3:8: error: the odd video size 1279 × 720; both must be even, for example [1280, "
-        "720]\n"
-        "    3 | size = [1279, 720]\n"
-        "      |        ^\n"
+        "scenes/broken.toml:3:9: error: 'size[0]' is 8; it must be from 16 to 8192\n"
+        "    3 | size = [8, 720]\n"
+        "      |         ^\n"
         "scenes/broken.toml:8:12: error: 'density' is nan, not a number; it must be from 0.0001 to 1000 "
         "kg/m²\n"
         "    8 |  density = nan\n"
