@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace unravel::sim {
 
@@ -266,6 +267,11 @@ void iterate(const ClothModel& model, const StepOptions& options, double h, Stag
         linearise(model, options, h, timer, ws, report);
     };
     const double whole = kinetic_of(model.mass, ws.dv), tolerance = options.solve.tolerance;
+    // What is at rest moves by rounding alone, of which no share is small.
+    const double still = position_rounding(stage.x_at) / stage.h;
+    const double rounding =
+        still * still * std::accumulate(model.mass.begin(), model.mass.end(), 0.0);
+    if (whole <= rounding) return;
     double before = std::numeric_limits<double>::infinity();
     for (int k = 1;; ++k) {
         advance(1.0);
@@ -283,7 +289,7 @@ void iterate(const ClothModel& model, const StepOptions& options, double h, Stag
         before = residual;
         ws.guess.assign(model.size(), Vec3::Zero());
         solve_stage(model, options, ws.guess, timer, ws, report);
-        if (!(kinetic_of(model.mass, ws.dv) > tolerance * tolerance * whole)) return;
+        if (!(kinetic_of(model.mass, ws.dv) > std::max(tolerance * tolerance * whole, rounding))) return;
         if (k == newton_limit) {
             report.converged = false;
             return;

@@ -39,21 +39,6 @@ void count_springs(std::span<const SpringFamily> families, StepReport& report) {
     }
 }
 
-// A Δv − b of every constraint: what holds it.
-void find_reactions(const ClothModel& model, StepWorkspace& ws) {
-    const std::span<const Constraint> all = ws.constraints.all();
-    ws.reaction.resize(all.size());
-    parallel_each(all.size(), [&](std::size_t k) {
-        const std::uint32_t p = all[k].particle;
-        if (!ws.coupled) {
-            ws.reaction[k] = model.mass[p] * ws.dv[p] - ws.impulse[p];
-            return;
-        }
-        const std::uint32_t row = ws.system.row_of[p];
-        ws.reaction[k] = row_times(ws.system, row, ws.solve.x) - ws.system.b[row];
-    });
-}
-
 // What a multistep scheme looks back on. Contact makes velocities jump: a touching particle looks back on a
 // past in which it has always moved as it does now.
 void remember(double h, const ClothState& state, const StepWorkspace& ws, ClothState& next) {
@@ -67,6 +52,20 @@ void remember(double h, const ClothState& state, const StepWorkspace& ws, ClothS
 }
 
 }  // namespace
+
+void find_reactions(const ClothModel& model, StepWorkspace& ws) {
+    const std::span<const Constraint> all = ws.constraints.all();
+    ws.reaction.resize(all.size());
+    parallel_each(all.size(), [&](std::size_t k) {
+        const std::uint32_t p = all[k].particle;
+        if (!ws.coupled) {
+            ws.reaction[k] = model.mass[p] * ws.dv[p] - ws.impulse[p];
+            return;
+        }
+        const std::uint32_t row = ws.system.row_of[p];
+        ws.reaction[k] = row_times(ws.system, row, ws.solve.x) - ws.system.b[row];
+    });
+}
 
 StepOptions step_options(const Solver& solver) {
     StepOptions options;
@@ -138,6 +137,7 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     StepReport report;
     report.step = state.step + 1;
     report.h = h;
+    ws.swept = false;
     StageTimer timer;
 
     // What the scheme takes for known: x̃, ṽ, and where it takes forces (paper Sec. 3)

@@ -77,6 +77,7 @@ struct StepWorkspace {
     std::vector<ComponentSolve> solves, whole_solves;  ///< (components)
     std::vector<Vec3> dv;                              ///< (particles) m/s
     ExplicitSweep sweep;
+    bool swept = false;  ///< the last step was made by it
     Integrator chosen = Integrator::automatic;  ///< what `auto` takes for steps of `chosen_for` seconds
     double chosen_for = 0;
     double explicit_step = 0;  ///< s, the largest stable step of `explicit`; 0: not asked for yet
@@ -89,8 +90,9 @@ struct StepWorkspace {
 ClothState initial_state(const Placement& placement);
 
 /// Substeps that a step of h seconds of `explicit` is divided into: as many as the options say, or as bring
-/// each below its limit of stability (sim/step/explicit_limit.hpp) by a margin.
-int substeps_of(const ClothModel& model, const StepOptions& options, double h, StepWorkspace& ws);
+/// each below its limit of stability (sim/step/explicit_limit.hpp) by a margin. A whole number, as large as it
+/// may be.
+double substeps_of(const ClothModel& model, const StepOptions& options, double h, StepWorkspace& ws);
 
 /// Advances the state by h seconds; ws.before is then what it was. Throws SimulationError where a velocity
 /// would not be finite; the state is then what it was before.
