@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "sim/mesh/mesh_cloth.hpp"
+#include "sim/scene/random.hpp"
 
 namespace unravel::sim {
 
@@ -49,6 +50,15 @@ Vec3 unrotated(const Cloth& cloth, int i, int j) {
 
 Vec3 placed_particle(const Cloth& cloth, int i, int j) {
     return cloth.center + rotation_matrix(cloth.rotation) * unrotated(cloth, i, j);
+}
+
+Vec3 started_particle(const Cloth& cloth, int i, int j) {
+    const Vec3 x = placed_particle(cloth, i, j);
+    if (cloth.jitter == 0) return x;
+    const auto index = static_cast<std::uint64_t>(j) * static_cast<std::uint64_t>(cloth.particles[0]) +
+                       static_cast<std::uint64_t>(i);
+    const Vec3 up = rotation_matrix(cloth.rotation) * Vec3::UnitY();
+    return x + cloth.jitter * seeded_uniform(cloth.seed, index) * up;
 }
 
 std::vector<Vec3> placed_particles(const Cloth& cloth) {

@@ -20,7 +20,10 @@ Vec2 particle_uv(const Cloth& cloth, int i, int j);
 /// Where the particle is placed [m], without jitter.
 Vec3 placed_particle(const Cloth& cloth, int i, int j);
 
-/// The same for all of them, at j · nu + i.
+/// Where it starts [m]: placed, and displaced by the cloth's jitter along its unrotated normal.
+Vec3 started_particle(const Cloth& cloth, int i, int j);
+
+/// As placed_particle(), all of them, at j · nu + i.
 std::vector<Vec3> placed_particles(const Cloth& cloth);
 
 /// Whether a pin catches the particle at (i, j); a mesh's vertex i is at (i, 0). One on the border of a box

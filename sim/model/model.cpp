@@ -9,7 +9,6 @@
 #include "sim/mesh/placement.hpp"
 #include "sim/model/mesh_links.hpp"
 #include "sim/model/mesh_springs.hpp"
-#include "sim/scene/random.hpp"
 
 namespace unravel::sim {
 
@@ -136,13 +135,9 @@ void add_bends(const Grid& g, BendSprings& bends, GridSprings& grid) {
 
 void place(const Grid& g, Placement& placement) {
     const Cloth& cloth = g.cloth;
-    const Vec3 up = rotation_matrix(cloth.rotation) * Vec3::UnitY();
     for (int j = 0; j < g.nv(); ++j) {
         for (int i = 0; i < g.nu(); ++i) {
-            Vec3 x = placed_particle(cloth, i, j);
-            if (cloth.jitter > 0)
-                x += cloth.jitter * seeded_uniform(cloth.seed, placement.x.size() - g.patch.first) * up;
-            placement.x.push_back(x);
+            placement.x.push_back(started_particle(cloth, i, j));
             placement.v.push_back(cloth.velocity);
         }
     }

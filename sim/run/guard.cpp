@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/mesh/mesh_solid.hpp"
+#include "sim/step/energy_input.hpp"
 
 namespace unravel::sim {
 
@@ -14,6 +14,8 @@ namespace {
 constexpr std::size_t most_named = 16;
 // Energy that a step may add, as a share of what the run has to spend.
 constexpr double rounding_share = 1e-10;
+// Damping so many times stiffer within a step than the spring itself is what makes it stiff.
+constexpr double overdamped_share = 1e3;
 
 std::string advice_for(Criterion criterion, const StepOptions& options, double h) {
     const bool explicit_springs = options.integrator != Integrator::implicit;
@@ -75,6 +77,15 @@ double height_energy(const ClothModel& model, const std::vector<Vec3>& x) {
     return energy;
 }
 
+// What springs and motion may hold because positions end at their last bits [J].
+double energy_of_rounding(const ClothModel& model, const ClothState& state, double h) {
+    const double off = position_rounding(state.x);
+    double energy = 0;
+    for (const double k : model.springs.stiffness.values()) energy += 0.5 * k * off * off;
+    for (const double m : model.mass) energy += 0.5 * m * off * off / (h * h);
+    return energy;
+}
+
 struct Judgement {
     const ClothModel& model;
     const StepOptions& options;
@@ -82,9 +93,9 @@ struct Judgement {
     double h;
     StepFailure failure;
 
-    [[noreturn]] void stop(Criterion criterion, const std::string& what) {
+    [[noreturn]] void stop(Criterion criterion, const std::string& what, const std::string& advice = {}) {
         failure.criterion = criterion;
-        failure.advice = advice_for(criterion, options, h);
+        failure.advice = advice.empty() ? advice_for(criterion, options, h) : advice;
         throw SimulationError(fmt::format("step {} (from {:.6g} s, {:.6g} s long): {}; {}", failure.step,
                                           failure.t, h, what, failure.advice),
                               failure);
@@ -117,12 +128,18 @@ struct Judgement {
         }
         failure.value = report.max_strain;
         failure.limit = limit;
+        // What damping makes stiff, no stretch and hardly a step makes better.
+        const double k = model.springs.stiffness[*failure.spring], d = model.springs.damping[*failure.spring];
+        const bool overdamped = 2 * d > overdamped_share * k * h;
         failure.particles = worst_particles(model.size(), limit, [&](std::uint32_t p) { return worst[p]; });
         stop(Criterion::strain,
              fmt::format("the stretch spring from {} to {} would be {:.3g} times its rest length (at most "
                          "{:.3g})",
                          particle_name(model, model.springs.i[*failure.spring]),
-                         particle_name(model, model.springs.j[*failure.spring]), 1 + most, 1 + limit));
+                         particle_name(model, model.springs.j[*failure.spring]), 1 + most, 1 + limit),
+             overdamped ? fmt::format("lower cloth.material.stretch_damping, or solver.tolerance (now {})",
+                                      options.solve.tolerance)
+                        : std::string());
     }
 
     void judge_energy(const StepReport& report, double limit) {
@@ -132,9 +149,13 @@ struct Judgement {
         failure.particles = worst_particles(
             model.size(), 0.0, [&](std::uint32_t p) { return model.mass[p] * after.v[p].squaredNorm(); });
         stop(Criterion::energy,
-             fmt::format("the energy of motion would grow to {:.3g} J (at most {:.3g} J) though nothing puts "
-                         "any in; {} is the fastest",
-                         failure.value, limit, particle_name(model, failure.particles.front())));
+             fmt::format("the energy of motion would grow to {:.3g} J (at most {:.3g} J), by more than "
+                         "anything puts in{}",
+                         failure.value, limit,
+                         failure.particles.empty()
+                             ? std::string("; it is lifted")
+                             : fmt::format("; {} is the fastest",
+                                           particle_name(model, failure.particles.front()))));
     }
 
     void judge_solution(const StepReport& report, const StepWorkspace& ws, double limit) {
@@ -163,15 +184,6 @@ const char* criterion_name(Criterion criterion) {
     return names[static_cast<int>(criterion)];
 }
 
-bool takes_energy(const ClothModel& model) {
-    const auto moves = [](const auto& thing) { return !thing.motion.empty(); };
-    const bool blows = model.wind && (!model.wind->velocity.isZero() || !model.wind->keyframes.empty());
-    const auto deforms = [](const Solid& solid) { return solid.geometry && solid.geometry->deforms(); };
-    return blows || model.stitches.size() > 0 || std::any_of(model.pins.begin(), model.pins.end(), moves) ||
-           std::any_of(model.solids.begin(), model.solids.end(), moves) ||
-           std::any_of(model.solids.begin(), model.solids.end(), deforms);
-}
-
 Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
     Guard guard;
     StepReport report;
@@ -180,15 +192,15 @@ Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
     limit_bend(model.bends, model.mass, h, bend);
     measure(model, bend, start, scratch, report);
     guard.strain += std::max(report.max_strain, 0.0);
-    if (takes_energy(model)) return guard;
     double weight = 0, size = 0;
     for (const double m : model.mass) weight += m * model.gravity.norm();
     for (const ClothPatch& patch : model.cloths) size = std::max({size, patch.size[0], patch.size[1]});
     const double height = height_energy(model, start.x), springs = report.potential - height;
-    const double spent = report.kinetic + springs + weight * size;
-    guard.energy = height + 2.0 * spent;
+    const double own = report.kinetic + springs + weight * size;
+    const double of_rounding = energy_of_rounding(model, start, h);
+    guard.energy = height + 2.0 * (own + of_rounding);
     guard.total = report.kinetic + report.potential;
-    if (!model.has_temporary_springs()) guard.rounding = rounding_share * spent;
+    guard.rounding = rounding_share * own + of_rounding;
     return guard;
 }
 
@@ -227,9 +239,15 @@ StepReport guarded_step(const ClothModel& model, const StepOptions& options, dou
                         StepWorkspace& ws, Guard& guard) {
     StepReport report = step(model, options, h, state, ws);
     if (!options.measure) return report;
-    const bool grew = total_energy(report) > guard.total + guard.rounding;
-    if (grew && ws.coupled && std::isfinite(total_energy(report)))
-        report = take_again(model, options, h, guard.total, report, state, ws);
+    double input = 0;
+    if (total_energy(report) > guard.total + guard.rounding && std::isfinite(total_energy(report))) {
+        input = energy_input(model, state, report, ws);
+        const double allowed = guard.total + input;
+        if (ws.coupled && total_energy(report) > allowed + guard.rounding)
+            report = take_again(model, options, h, allowed, report, state, ws);
+        // What is not counted has put in what is there.
+        input = std::min(input, std::max(0.0, total_energy(report) - guard.total));
+    }
     Judgement judgement{model, options, state, h, {}};
     judgement.failure.step = report.step;
     judgement.failure.t = ws.before.t;
@@ -237,13 +255,14 @@ StepReport guarded_step(const ClothModel& model, const StepOptions& options, dou
     try {
         judgement.judge_finite(report);
         judgement.judge_strain(report, guard.strain);
-        judgement.judge_energy(report, guard.energy);
+        judgement.judge_energy(report, guard.energy + input);
         judgement.judge_solution(report, ws, guard.residual);
     } catch (const SimulationError&) {
         std::swap(state, ws.before);
         throw;
     }
     guard.total = total_energy(report);
+    guard.energy += input;
     return report;
 }
 

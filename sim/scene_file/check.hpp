@@ -26,6 +26,7 @@ struct Checking {
 void check_clip(const Checking&);                                        ///< size, frames, steps in a frame
 void check_cloths(const Checking&);                                      ///< names, number of particles
 void check_solids(const Checking&);                                      ///< names, shapes, friction
+void check_pins(const Checking&);                                        ///< who takes over from whom
 void check_start(const Checking&);                                       ///< no solid holds a cloth
 void check_looks(const Checking&, const std::filesystem::path& folder);  ///< cameras, textures
 

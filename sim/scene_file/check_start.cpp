@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "sim/mesh/placement.hpp"
@@ -21,8 +22,8 @@ struct Held {
 };
 
 /// The first particle found deeper in the solid than its offset. The distance changes by no more than one
-/// moves, so a block of the grid whose middle is farther out than the block reaches has none; other blocks
-/// are cut in four. That makes a cloth of millions as cheap as its border with the solid.
+/// moves, so a block of the grid whose middle is farther out than the block and its jitter reach has none;
+/// other blocks are cut in four. That makes a cloth of millions as cheap as its border with the solid.
 class HeldSearch {
 public:
     HeldSearch(const Cloth& cloth, const Solid& solid)
@@ -35,7 +36,7 @@ public:
 private:
     std::optional<Held> find_vertex() const {
         for (int v = 0; v < cloth_.particles[0]; ++v) {
-            const double distance = signed_distance(solid_, to_solid_ * placed_particle(cloth_, v, 0));
+            const double distance = signed_distance(solid_, to_solid_ * started_particle(cloth_, v, 0));
             if (distance < -solid_.offset) return Held{v, 0, -distance};
         }
         return {};
@@ -43,13 +44,14 @@ private:
 
     std::optional<Held> find(int i0, int i1, int j0, int j1) const {
         const int i = (i0 + i1) / 2, j = (j0 + j1) / 2;
-        const double distance = signed_distance(solid_, to_solid_ * placed_particle(cloth_, i, j));
+        const double distance = signed_distance(solid_, to_solid_ * started_particle(cloth_, i, j));
         if (distance < -solid_.offset) return Held{i, j, -distance};
         // On a tube the way through the air is shorter than along the cloth, so the bound holds there too.
         const double reach_u = spacing(0) * std::max(i - i0, i1 - 1 - i);
         const double reach_v = spacing(1) * std::max(j - j0, j1 - 1 - j);
         const bool single = i1 - i0 == 1 && j1 - j0 == 1;
-        if (single || distance + solid_.offset > std::hypot(reach_u, reach_v) * (1 + 1e-9)) return {};
+        const double reach = std::hypot(reach_u, reach_v) + 2 * cloth_.jitter;
+        if (single || distance + solid_.offset > reach * (1 + 1e-9)) return {};
         for (const auto& [a0, a1] : {std::array{i0, i}, std::array{i, i1}}) {
             for (const auto& [b0, b1] : {std::array{j0, j}, std::array{j, j1}}) {
                 if (a0 == a1 || b0 == b1) continue;
@@ -91,7 +93,65 @@ std::array<int, 2> nearest_particle(const Cloth& cloth, const Vec2& uv) {
     return {static_cast<int>(std::lround(uv.x() * (nu - 1))), j};
 }
 
+// Whether two pins have any particle at the same place all the time.
+bool moves_alike(const Pin& a, const Pin& b) {
+    const auto still = [](const Pin& pin) {
+        return std::all_of(pin.motion.begin(), pin.motion.end(), [](const Keyframe& key) {
+            return key.position.isZero(0) && key.rotation.isZero(0);
+        });
+    };
+    if (still(a) && still(b)) return true;
+    return std::equal(a.motion.begin(), a.motion.end(), b.motion.begin(), b.motion.end(),
+                      [](const Keyframe& one, const Keyframe& other) {
+                          return one.time == other.time && one.position == other.position &&
+                                 one.rotation.isZero(0) && other.rotation.isZero(0);
+                      });
+}
+
+bool outlasts(const Pin& pin, double time) {
+    return !pin.release || *pin.release > time;
+}
+
+// The first of the pins that hold a particle moves it; what it lets go of must not jump to where a later one
+// would have it.
+void check_handovers(const Checking& check, const Cloth& cloth) {
+    const std::vector<Pin>& pins = cloth.pins;
+    std::vector<std::vector<std::size_t>> held(pins.size());
+    const auto particles_of = [&](std::size_t k) -> const std::vector<std::size_t>& {
+        if (held[k].empty()) held[k] = pinned_particles(cloth, pins[k]);
+        return held[k];
+    };
+    for (std::size_t b = 1; b < pins.size(); ++b) {
+        for (std::size_t a = 0; a < b; ++a) {
+            if (!pins[a].release || !outlasts(pins[b], *pins[a].release) || moves_alike(pins[a], pins[b]))
+                continue;
+            std::vector<std::size_t> both;
+            std::ranges::set_intersection(particles_of(a), particles_of(b), std::back_inserter(both));
+            if (both.empty()) continue;
+            const auto nu = static_cast<std::size_t>(cloth.particles[0]);
+            const std::string particle =
+                cloth.geometry ? fmt::format("vertex {}", both.front() + 1)
+                               : fmt::format("particle ({}, {})", both.front() % nu, both.front() / nu);
+            check.problems.push_back(
+                {pins[b].place,
+                 fmt::format("{} would jump here at {} s, when the pin at line {} lets go of it", particle,
+                             *pins[a].release, pins[a].place.line),
+                 "let one pin hold it, or give both the same motion"});
+            break;
+        }
+    }
+}
+
 }  // namespace
+
+void check_pins(const Checking& check) {
+    for (std::size_t c = 0; c < check.scene.cloths.size(); ++c) {
+        const Cloth& cloth = check.scene.cloths[c];
+        const std::string path = fmt::format("cloth[{}]", c);
+        if (!check.places.sound(path) || !loaded(cloth)) continue;
+        check_handovers(check, cloth);
+    }
+}
 
 void check_start(const Checking& check) {
     const Scene& scene = check.scene;

@@ -176,6 +176,13 @@ void describe(Fields& f, Pin& pin, std::vector<std::string>& names) {
     f.place(pin.place, pin_target_name(pin.target));
     f.list({"motion", "keyframes: displacement from, and rotation about the centre of, the pinned particles"},
            pin.motion, ListForm::inline_tables, in_order<Keyframe>());
+    const auto displaced = [](const Keyframe& key) {
+        return !key.position.isZero(0) || !key.rotation.isZero(0);
+    };
+    if (f.reading() && !pin.motion.empty() && f.sound("motion") && displaced(pin.motion.front()))
+        f.problem("motion", "the motion begins away from where the pin stands: the cloth would be torn there",
+                  fmt::format("begin with {{ time = {} }}; positions and rotations count from the start",
+                              pin.motion.front().time > 0 ? 0 : pin.motion.front().time));
     f.optional_number({"release", "s, when it lets go; absent: never"}, pin.release, time_bounds);
 }
 

@@ -97,6 +97,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
     check_clip(checking);
     check_cloths(checking);
     check_solids(checking);
+    check_pins(checking);
     check_start(checking);
     check_looks(checking, folder);
     stop_on_problems();

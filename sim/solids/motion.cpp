@@ -63,6 +63,8 @@ MotionSample sample_motion(const Motion& motion, double t) {
 Vec3 moved_point(const Motion& motion, const Vec3& pivot, const Vec3& start, double t) {
     if (motion.empty()) return start;
     const MotionSample m = sample_motion(motion, t);
+    // What does not move stays where it is to the last bit.
+    if (m.displacement.isZero(0) && m.degrees.isZero(0)) return start;
     return pivot + m.displacement + rotation_from_degrees(m.degrees) * (start - pivot);
 }
 

@@ -1,17 +1,18 @@
 #pragma once
 
+#include "sim/step/explicit_limit.hpp"
 #include "sim/step/step.hpp"
 
 namespace unravel::sim {
 
 /// What a step is expected to cost either way, per particle [ns].
 struct IntegratorCosts {
-    int substeps = 1;    ///< that `explicit` needs to stay stable
+    double substeps = 1;  ///< that `explicit` needs to stay stable; a whole number, as large as it may be
     bool swept = false;  ///< they are fused over the grid
     double explicit_cost = 0;
     double coupled_cost = 0;  ///< adaptive IMEX
     Integrator cheaper() const {
-        return explicit_cost <= coupled_cost ? Integrator::explicit_ : Integrator::adaptive_imex;
+        return explicit_cost <= coupled_cost && substeps <= most_substeps ? Integrator::explicit_ : Integrator::adaptive_imex;
     }
 };
 

@@ -25,6 +25,14 @@ struct ExplicitLimit {
         0;  ///< s, largest stable step; +∞ where nothing is explicit, and for a split that follows h
 };
 
+/// Substeps that a step may be divided into. More would be tens of times dearer than any other way, and
+/// nobody would hear of it.
+inline constexpr double most_substeps = 1e5;
+
+/// Substeps of `explicit` that bring a step of h seconds below its limit of stability by a margin, at least
+/// 1, where its largest stable step is `stable` seconds.
+double stable_substeps(double h, double stable);
+
 ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options, double h);
 
 /// A step that the explicit springs don't bear. what() names the limit and what to change. Exit code 3.
@@ -33,7 +41,7 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Throws UnstableStep where the share is 1 or more.
+/// Throws UnstableStep where the share is 1 or more, or where it would take too many substeps.
 void require_explicit_stability(const ClothModel& model, const StepOptions& options, double h);
 
 }  // namespace unravel::sim

@@ -8,11 +8,6 @@ namespace unravel::sim {
 
 namespace {
 
-// Share of the limit of stability that a substep chosen here may reach. The limit is that of the cloth laid
-// flat; air, bending and stretched cells take their part: a hanging sheet of 201 × 201 breaks at 0.9 and is
-// as with substeps half as long at 0.75.
-constexpr double limit_margin = 0.75;
-
 // Stretch and shear springs at x, as the explicit treatment has them.
 void classify(const ExtensionSprings& springs, std::span<const Vec3> x, std::vector<SpringState>& out,
               StepReport& report) {
@@ -33,6 +28,8 @@ StepReport swept_step(const ClothModel& model, const StepOptions& options, doubl
     StageTimer timer;
     report.step = state.step + 1;
     report.h = h;
+    ws.swept = true;
+    ws.coupled = false;
     ClothState& next = ws.before;
     begin_next(state, h, next);
     ws.sweep.run(model, state, substeps, next, ws.constraints, report.contacts);
@@ -85,19 +82,20 @@ StepReport substeps_in_turn(const ClothModel& model, const StepOptions& options,
 
 }  // namespace
 
-int substeps_of(const ClothModel& model, const StepOptions& options, double h, StepWorkspace& ws) {
+double substeps_of(const ClothModel& model, const StepOptions& options, double h, StepWorkspace& ws) {
     if (options.substeps > 0) return options.substeps;
     if (ws.explicit_step == 0) {
         StepOptions whole = options;
         whole.substeps = 1;
         ws.explicit_step = explicit_limit(model, whole, h).step;
     }
-    return std::max(1, static_cast<int>(std::ceil(h / (limit_margin * ws.explicit_step) - 1e-9)));
+    return stable_substeps(h, ws.explicit_step);
 }
 
 StepReport explicit_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                          StepWorkspace& ws) {
-    const int substeps = substeps_of(model, options, h, ws);
+    // Who starts a run has refused what is more than most_substeps.
+    const int substeps = static_cast<int>(std::min(substeps_of(model, options, h, ws), 1e9));
     limit_bend(model.bends, model.mass, h / substeps, ws.bend_limit);
     if (options.sweep && ws.sweep.prepare(model, ws.bend_limit, h / substeps))
         return swept_step(model, options, h, substeps, state, ws);

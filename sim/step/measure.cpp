@@ -47,4 +47,10 @@ void measure(const ClothModel& model, const BendLimit& bend, std::span<const Vec
     report.max_strain = *std::max_element(p99, ws.strain.end());
 }
 
+double position_rounding(std::span<const Vec3> x) {
+    double farthest = 0;
+    for (const Vec3& position : x) farthest = std::max(farthest, position.cwiseAbs().maxCoeff());
+    return 1e-12 * farthest;
+}
+
 }  // namespace unravel::sim

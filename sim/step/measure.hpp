@@ -24,4 +24,8 @@ void measure(const ClothModel& model, const BendLimit& bend, const ClothState& s
 void measure(const ClothModel& model, const BendLimit& bend, std::span<const Vec3> x, std::span<const Vec3> v,
              MeasureWorkspace& ws, StepReport& report);
 
+/// What is rounding in positions, where they are (particles): far above their last bits, far below anything
+/// that can be seen [m].
+double position_rounding(std::span<const Vec3> x);
+
 }  // namespace unravel::sim

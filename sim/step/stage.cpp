@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace unravel::sim {
 
@@ -12,11 +13,22 @@ constexpr int newton_limit = 30;
 // Halvings of a Newton step that would increase the residual.
 constexpr int newton_halvings = 4;
 
-// Right-hand side of the stage: friction, M (ṽ − v*) and h_f f*, gathered per particle in a fixed order.
+// Friction into a system that has none yet.
+void begin_friction(const ClothModel& model, StepWorkspace& ws) {
+    ws.inertia.clear();
+    if (!any_friction(ws.touches)) return;
+    ws.inertia = model.mass;
+    for (Touch& touch : ws.touches) {
+        touch.drag_added = 0;
+        touch.push_added.setZero();
+    }
+    add_friction(ws.stage.v_at, ws.constraints, ws.touches, ws.inertia, ws.impulse);
+}
+
+// Right-hand side of the stage: M (ṽ − v*), h_f f* and friction, gathered per particle in a fixed order.
 // Forces that were gathered along rows are in `impulse` already.
 void add_forces(const ClothModel& model, StepWorkspace& ws) {
     const Stage& stage = ws.stage;
-    const bool rubbed = !ws.friction.empty();
     ws.impulse.resize(model.size());
     parallel_each(model.size(), [&](std::size_t p) {
         Vec3 f = model.mass[p] * model.gravity;
@@ -33,10 +45,10 @@ void add_forces(const ClothModel& model, StepWorkspace& ws) {
             gather(ws.bend_adjacency, ws.bend);
         }
         if (model.has_temporary_springs()) gather(ws.self.adjacency, ws.self.forces.force);
-        const Vec3 friction = rubbed ? ws.friction[p] : Vec3(Vec3::Zero());
-        ws.impulse[p] = friction + stage.h_force * f + model.mass[p] * (stage.v[p] - stage.v_at[p]);
+        ws.impulse[p] = stage.h_force * f + model.mass[p] * (stage.v[p] - stage.v_at[p]);
     });
     if (model.wind && !ws.rowwise) add_air(ws.air_cells, ws.air, stage.h_force, ws.impulse);
+    begin_friction(model, ws);
 }
 
 void count_solves(const std::vector<ComponentSolve>& solves, StepReport& report) {
@@ -77,9 +89,10 @@ bool any_implicit(std::span<const SpringFamily> families) {
 void solve_uncoupled(const ClothModel& model, StepWorkspace& ws) {
     lone_particles(model.size(), ws.constraints, ws.components);
     ws.solves.assign(ws.components.count(), {});
+    const std::span<const double> inertia = inertia_of(model, ws);
     parallel_each(model.size(), [&](std::size_t p) {
         const Constraint* c = ws.constraints.find(static_cast<std::uint32_t>(p));
-        const Vec3 dv = ws.impulse[p] / model.mass[p];
+        const Vec3 dv = ws.impulse[p] / inertia[p];
         ws.dv[p] = c ? Vec3(c->S * dv + (c->z - c->S * c->z)) : dv;
     });
 }
@@ -215,7 +228,7 @@ void solve_stage(const ClothModel& model, const StepOptions& options, std::span<
     const std::size_t n = model.size();
     const Families all = families_of(model, ws);
     const std::span<const SpringFamily> families = all;
-    const Load load{model.mass, ws.impulse, ws.drift};
+    const Load load{inertia_of(model, ws), ws.impulse, ws.drift};
     ws.dv.resize(n);
     ws.coupled = any_implicit(families);
     if (!ws.coupled) {
@@ -274,10 +287,15 @@ void iterate(const ClothModel& model, const StepOptions& options, double h, Stag
         linearise(model, options, h, timer, ws, report);
     };
     const double whole = kinetic_of(model.mass, ws.dv), tolerance = options.solve.tolerance;
+    // What is at rest moves by rounding alone, of which no share is small.
+    const double still = position_rounding(stage.x_at) / stage.h;
+    const double rounding =
+        still * still * std::accumulate(model.mass.begin(), model.mass.end(), 0.0);
+    if (whole <= rounding) return;
     double before = std::numeric_limits<double>::infinity();
+    ws.constraints.fulfil();
     for (int k = 1;; ++k) {
         advance(1.0);
-        ws.constraints.fulfil();
         if (options.energy_limit && energy_at_end(model, ws) <= *options.energy_limit) {
             ws.dv.assign(model.size(), Vec3::Zero());
             return;
@@ -291,7 +309,7 @@ void iterate(const ClothModel& model, const StepOptions& options, double h, Stag
         before = residual;
         ws.guess.assign(model.size(), Vec3::Zero());
         solve_stage(model, options, ws.guess, timer, ws, report);
-        if (!(kinetic_of(model.mass, ws.dv) > tolerance * tolerance * whole)) return;
+        if (!(kinetic_of(model.mass, ws.dv) > std::max(tolerance * tolerance * whole, rounding))) return;
         if (k == newton_limit) {
             report.converged = false;
             return;

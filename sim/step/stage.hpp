@@ -48,6 +48,15 @@ void solve_again_where_taut(const ClothModel& model, const StepOptions& options,
 void iterate(const ClothModel& model, const StepOptions& options, double h, StageTimer& timer,
              StepWorkspace& ws, StepReport& report);
 
+/// What stands in front of Δv besides the springs (particles) [kg]: mass, and what resists sliding.
+inline std::span<const double> inertia_of(const ClothModel& model, const StepWorkspace& ws) {
+    return ws.inertia.empty() ? std::span<const double>(model.mass) : ws.inertia;
+}
+
+/// A Δv − b of every constraint, the impulse that holds it, and the velocity that its particle gets:
+/// ws.reaction, ws.v_constrained.
+void find_reactions(const ClothModel& model, StepWorkspace& ws);
+
 /// What a step of h seconds from `state` makes, but for what it computes: x, v, dv and contacts.
 void begin_next(const ClothState& state, double h, ClothState& next);
 

@@ -14,19 +14,21 @@ namespace unravel::sim {
 
 namespace {
 
-// S and z of Eq. (9): pins, then contacts. Depth corrections go into `base`, friction into `friction`.
+// S and z of Eq. (9): pins, then contacts. Depth corrections go into `base`.
 void constrain(const ClothModel& model, const StepView& view, const ClothState& state, double h,
                StepWorkspace& ws) {
     ws.constraints.reset(model.size());
     constrain_pins(model, view, ws.base, state.t + h, ws.constraints);
     ws.touches.clear();
+    ws.inertia.clear();
     if (model.solids.empty()) return;
     ws.corrected.assign(ws.base.begin(), ws.base.end());
     ws.base = ws.corrected;
-    ws.friction.assign(model.size(), Vec3::Zero());
     pose_solids(model.solids, state.t, h, ws.poses);
     find_touches(model.solids, ws.poses, view, state.contacts, ws.constraints, ws.touches_found, ws.touches);
-    constrain_touches(model.solids, view, ws.touches, ws.constraints, ws.corrected, ws.friction);
+    settle_depths(view, ws.touches, ws.corrected);
+    try_holds(model.solids, view, ws.touches);
+    constrain_touches(view, ws.touches, ws.stage.x, ws.constraints);
 }
 
 void count_springs(std::span<const SpringFamily> families, StepReport& report) {
@@ -39,19 +41,21 @@ void count_springs(std::span<const SpringFamily> families, StepReport& report) {
     }
 }
 
-// A Δv − b of every constraint: what holds it.
-void find_reactions(const ClothModel& model, StepWorkspace& ws) {
-    const std::span<const Constraint> all = ws.constraints.all();
-    ws.reaction.resize(all.size());
-    parallel_each(all.size(), [&](std::size_t k) {
-        const std::uint32_t p = all[k].particle;
-        if (!ws.coupled) {
-            ws.reaction[k] = model.mass[p] * ws.dv[p] - ws.impulse[p];
-            return;
-        }
-        const std::uint32_t row = ws.system.row_of[p];
-        ws.reaction[k] = row_times(ws.system, row, ws.solve.x) - ws.system.b[row];
-    });
+// What friction cannot hold slides, and the step is solved again (sim/constraints/friction.hpp).
+void settle_friction(const ClothModel& model, const StepOptions& options, const StepView& view, double t_end,
+                     StageTimer& timer, StepWorkspace& ws, StepReport& report) {
+    for (ws.trials = 0; ws.trials < most_trials; ++ws.trials) {
+        find_reactions(model, ws);
+        if (!test_holds(model.solids, view, ws.constraints, ws.reaction, ws.v_constrained, ws.touches)) return;
+        ws.constraints.reset(model.size());
+        constrain_pins(model, view, ws.stage.x, t_end, ws.constraints);
+        constrain_touches(view, ws.touches, ws.stage.x, ws.constraints);
+        if (ws.inertia.empty()) ws.inertia = model.mass;
+        add_friction(ws.stage.v_at, ws.constraints, ws.touches, ws.inertia, ws.impulse);
+        timer.lap(report.times.contact);
+        ws.guess = ws.dv;
+        solve_stage(model, options, ws.guess, timer, ws, report);
+    }
 }
 
 // What a multistep scheme looks back on. Contact makes velocities jump: a touching particle looks back on a
@@ -67,6 +71,22 @@ void remember(double h, const ClothState& state, const StepWorkspace& ws, ClothS
 }
 
 }  // namespace
+
+void find_reactions(const ClothModel& model, StepWorkspace& ws) {
+    const std::span<const Constraint> all = ws.constraints.all();
+    ws.reaction.resize(all.size());
+    ws.v_constrained.resize(all.size());
+    parallel_each(all.size(), [&](std::size_t k) {
+        const std::uint32_t p = all[k].particle;
+        ws.v_constrained[k] = ws.stage.v_at[p] + ws.dv[p];
+        if (!ws.coupled) {
+            ws.reaction[k] = inertia_of(model, ws)[p] * ws.dv[p] - ws.impulse[p];
+            return;
+        }
+        const std::uint32_t row = ws.system.row_of[p];
+        ws.reaction[k] = row_times(ws.system, row, ws.solve.x) - ws.system.b[row];
+    });
+}
 
 StepOptions step_options(const Solver& solver) {
     StepOptions options;
@@ -138,6 +158,7 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     StepReport report;
     report.step = state.step + 1;
     report.h = h;
+    ws.swept = false;
     StageTimer timer;
 
     // What the scheme takes for known: x̃, ṽ, and where it takes forces (paper Sec. 3)
@@ -163,6 +184,7 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
 
     // Independent components (Sec. 5), A Δv = b (Eq. 5) under Sx = Sb, (I − S)x = (I − S)z (Eq. 9)
     solve_stage(model, options, state.dv, timer, ws, report);
+    if (!model.solids.empty()) settle_friction(model, options, view, state.t + h, timer, ws, report);
     const bool iterates = scheme.iterates || options.energy_limit;
     if (iterates) {
         iterate(model, options, h, timer, ws, report);
@@ -175,7 +197,8 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     begin_next(state, h, next);
     if (!model.solids.empty()) {
         find_reactions(model, ws);
-        judge_touches(model.solids, view, ws.constraints, ws.reaction, ws.touches, next.contacts);
+        judge_touches(model.solids, view, ws.constraints, ws.reaction, ws.v_constrained, ws.touches,
+                      next.contacts);
         timer.lap(report.times.contact);
     }
 

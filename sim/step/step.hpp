@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/constraints/contact.hpp"
+#include "sim/constraints/friction.hpp"
 #include "sim/integrators/scheme.hpp"
 #include "sim/linear/components.hpp"
 #include "sim/linear/solve.hpp"
@@ -64,9 +65,12 @@ struct StepWorkspace {
     std::vector<Vec3> ahead;             ///< (particles) where implicit springs are linearised; empty: at x*
     std::vector<Vec3> drift_from_start;  ///< (particles) drift for those that are linearised at x* even so
     std::span<const Vec3> base;  ///< (particles) x̃ with the contacts' depth corrections; during a step
-    std::vector<Vec3> corrected, friction;    ///< (particles) empty without solids
+    std::vector<Vec3> corrected;              ///< (particles) empty without solids
+    std::vector<double> inertia;              ///< (particles) kg, mass and friction; empty where none slides
     std::vector<Vec3> impulse, drift, guess;  ///< (particles)
-    std::vector<Vec3> reaction;               ///< (constraints)
+    std::uint32_t trials = 0;                 ///< of friction, that failed in the last step
+    std::vector<Vec3> reaction;               ///< (constraints) kg·m/s
+    std::vector<Vec3> v_constrained;          ///< (constraints) at the step's end [m/s]
     bool coupled = false;                     ///< some spring is implicit, so that there is a system
     std::vector<std::uint32_t> parent;
     Components components, whole;
@@ -76,6 +80,7 @@ struct StepWorkspace {
     std::vector<ComponentSolve> solves, whole_solves;  ///< (components)
     std::vector<Vec3> dv;                              ///< (particles) m/s
     ExplicitSweep sweep;
+    bool swept = false;  ///< the last step was made by it
     Integrator chosen = Integrator::automatic;  ///< what `auto` takes for steps of `chosen_for` seconds
     double chosen_for = 0;
     double explicit_step = 0;  ///< s, the largest stable step of `explicit`; 0: not asked for yet
@@ -88,8 +93,9 @@ struct StepWorkspace {
 ClothState initial_state(const Placement& placement);
 
 /// Substeps that a step of h seconds of `explicit` is divided into: as many as the options say, or as bring
-/// each below its limit of stability (sim/step/explicit_limit.hpp) by a margin.
-int substeps_of(const ClothModel& model, const StepOptions& options, double h, StepWorkspace& ws);
+/// each below its limit of stability (sim/step/explicit_limit.hpp) by a margin. A whole number, as large as it
+/// may be.
+double substeps_of(const ClothModel& model, const StepOptions& options, double h, StepWorkspace& ws);
 
 /// Advances the state by h seconds; ws.before is then what it was. Throws SimulationError where a velocity
 /// would not be finite; the state is then what it was before.

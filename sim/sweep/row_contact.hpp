@@ -33,8 +33,8 @@ struct RowContacts {
 
 /// Memory of one thread.
 struct RowContactScratch {
-    std::vector<Vec3> x, v, base, friction, impulse, dv, reaction;
-    std::vector<double> mass;
+    std::vector<Vec3> x, v, base, impulse, dv, v_end, reaction;
+    std::vector<double> mass, inertia;
     Constraints constraints;
     std::vector<std::vector<Touch>> found;
     std::vector<Touch> touches;

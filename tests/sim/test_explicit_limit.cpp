@@ -5,6 +5,7 @@
 
 #include "sim/run/simulate.hpp"
 #include "sim/scene_file/load.hpp"
+#include "sim/step/choose_integrator.hpp"
 
 using namespace unravel;
 using namespace unravel::sim;
@@ -68,4 +69,20 @@ TEST_CASE("a step beyond the limit is refused with the largest that holds") {
     CHECK_NOTHROW(require_explicit_stability(s.model, s.options, 0.1));
     s.options.threshold = 1e6;
     CHECK_THROWS_WITH(require_explicit_stability(s.model, s.options, 0.1), Catch::Contains("threshold"));
+}
+
+TEST_CASE("what would take more substeps than can be counted is refused, and auto goes the other way") {
+    const auto hard = [](const char* integrator) {
+        return start_simulation(parse_scene(
+            "[cloth]\nparticles = [21, 21]\nsize = [0.1, 0.1]\nmaterial = { stretch_damping = 1e6 }\n"
+            "[[cloth.pin]]\ncorner = \"u0v0\"\n[solver]\nsubsteps = 0\nintegrator = \"" +
+                std::string(integrator) + "\"\n",
+            "hard.toml"));
+    };
+    Simulation divided = hard("explicit"), automatic = hard("auto");
+    CHECK_THROWS_AS(require_explicit_stability(divided.model, divided.options, 1.0 / 240), UnstableStep);
+    require_explicit_stability(automatic.model, automatic.options, 1.0 / 240);
+    const IntegratorCosts costs = count_costs(automatic.model, automatic.options, 1.0 / 240, automatic.ws);
+    CHECK(costs.substeps > 1e9);
+    CHECK(costs.cheaper() == Integrator::adaptive_imex);
 }

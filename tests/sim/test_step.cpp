@@ -168,7 +168,7 @@ TEST_CASE("effects that the scene does not name hold no memory and take no time"
         {"solids", model.solids.capacity()},
         {"poses", ws.poses.now.capacity() + ws.poses.next.capacity()},
         {"touches", ws.touches.capacity() + ws.touches_found.capacity()},
-        {"friction", ws.friction.capacity()},
+        {"inertia", ws.inertia.capacity()},
         {"reactions", ws.reaction.capacity()},
         {"contacts", simulation.state.contacts.capacity()},
         {"bends", model.bends.i.capacity() + model.bends.stiffness.bytes() + ws.bend.capacity()},

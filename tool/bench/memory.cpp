@@ -112,7 +112,7 @@ MemoryRecord account_memory(const Simulation& simulation, double peak) {
                                                bytes(w.implicit_bend.forces));
     add("forces of air", bytes(w.air));
     add("base, drift, impulse and other vectors",
-        bytes(w.ahead, w.drift_from_start, w.corrected, w.friction, w.impulse, w.drift, w.guess, w.dv,
+        bytes(w.ahead, w.drift_from_start, w.corrected, w.inertia, w.v_constrained, w.impulse, w.drift, w.guess, w.dv,
               w.reaction, w.taut));
     add("self-collision", bytes(w.self.springs) + bytes(w.self.forces) +
                               static_cast<double>(w.self.adjacency.bytes()) +

@@ -94,7 +94,7 @@ int command_check(const Options& options) {
         const IntegratorCosts costs =
             count_costs(simulation.model, simulation.options, scene.solver.step, simulation.ws);
         fmt::print(
-            "  auto takes {}: explicit would need {} substeps, about {:.2g} us per particle and step against "
+            "  auto takes {}: explicit would need {:.6g} substeps, about {:.2g} us per particle and step against "
             "{:.2g}\n",
             costs.cheaper() == Integrator::explicit_ ? "explicit substeps" : "adaptive-imex", costs.substeps,
             1e-3 * costs.explicit_cost, 1e-3 * costs.coupled_cost);
