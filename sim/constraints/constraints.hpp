@@ -35,7 +35,7 @@ public:
         list_.push_back(c);
     }
     /// What was prescribed has been done: of the constraints only S remains.
-    void fulfil() {
+    void clear_prescribed() {
         for (Constraint& c : list_) c.z.setZero();
     }
     const Constraint* find(std::uint32_t particle) const {

@@ -36,7 +36,7 @@ UNRAVEL_INLINE Sym3<f8> evens_self(Mass, const float* p, int) {
     const f8 m = even_lanes(p), zero{};
     return {m, zero, zero, m, zero, m};
 }
-UNRAVEL_INLINE Sym3<f8> evens_self(Ground, const float* p, int pitch) {
+UNRAVEL_INLINE Sym3<f8> evens_self(OwnBlock, const float* p, int pitch) {
     return even_blocks(Blocks{}, p, pitch);
 }
 

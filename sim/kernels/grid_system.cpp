@@ -47,15 +47,15 @@ constexpr std::array<const SpringRows GridSprings::*, 4> families{&GridSprings::
 
 // Two rows at a time, one array per number, as kernels along rows want them; with the columns past a tube's
 // seam.
-class TurnedRows {
+class TransposedRows {
 public:
     static constexpr std::size_t numbers = 11;  // x, drift, what springs pull by; ours, mass
-    explicit TurnedRows(const Loader& l) : l_(l), stride_(static_cast<std::size_t>(l.nu) + 1) {
+    explicit TransposedRows(const Loader& l) : l_(l), stride_(static_cast<std::size_t>(l.nu) + 1) {
         thread_local std::vector<double> memory;
         memory.resize(2 * (numbers + 1) * stride_);
         memory_ = memory.data();
     }
-    void turn(int j) {
+    void load(int j) {
         held_[j & 1] = false;
         for (int i = 0; i < l_.nu; ++i) {
             const std::uint32_t p = l_.out.particle(i, j);
@@ -94,7 +94,7 @@ private:
 };
 
 // What neighbours that are held, and move as they must, put into the right-hand side of ours.
-void add_held(const Loader& l, const SpringRows& rows, int j, TurnedRows& turned) {
+void add_held(const Loader& l, const SpringRows& rows, int j, TransposedRows& transposed) {
     const int from_i = static_cast<int>(rows.from[0]), to_i = static_cast<int>(rows.to[0]);
     const int other_j = j + static_cast<int>(rows.to[1]);
     for (std::uint32_t k = 0; k < rows.per_row; ++k) {
@@ -109,13 +109,13 @@ void add_held(const Loader& l, const SpringRows& rows, int j, TurnedRows& turned
         const double scale = l.h * l.h * (stiffness - t) + l.h * l.family.springs->damping[s];
         const Vec3& z = l.constraints.find(held)->z;
         const Vec3 pull = l.h * l.h * t * z + scale * u.dot(z) * u;
-        const Row to = from(turned.pull(l.ours(p) ? j : other_j), l.ours(p) ? i : other_i);
+        const Row to = from(transposed.pull(l.ours(p) ? j : other_j), l.ours(p) ? i : other_i);
         for (std::size_t c = 0; c < 3; ++c) *to[c] += pull[static_cast<Eigen::Index>(c)];
     }
 }
 
 // All springs that begin in a row; their blocks only where it is one of the band's.
-double couple(const Loader& l, int j, bool ours, TurnedRows& turned) {
+double couple(const Loader& l, int j, bool ours, TransposedRows& transposed) {
     const ExtensionSprings& springs = *l.family.springs;
     double stiffest = 0;
     for (std::size_t f = 0; f < families.size(); ++f) {
@@ -129,24 +129,24 @@ double couple(const Loader& l, int j, bool ours, TurnedRows& turned) {
         const std::uint32_t s = rows.at(0, static_cast<std::uint32_t>(l.first_row + j));
         float* const blocks = l.out.couplings.data() + l.at(0, j, 16) + 4 * static_cast<int>(f) * l.pitch;
         const double most =
-            couple_row(turned.end(j).from(from_i), turned.end(j + down).from(to_i), springs.rest[s],
-                       springs.stiffness.run(s, rows.per_row, turned.coefficients(0)),
-                       springs.damping.run(s, rows.per_row, turned.coefficients(1)),
-                       l.family.forces->state.data() + s, l.h, rows.per_row, from(turned.pull(j), from_i),
-                       from(turned.pull(j + down), to_i), ours ? blocks : nullptr, l.pitch);
+            couple_row(transposed.end(j).from(from_i), transposed.end(j + down).from(to_i), springs.rest[s],
+                       springs.stiffness.run(s, rows.per_row, transposed.coefficients(0)),
+                       springs.damping.run(s, rows.per_row, transposed.coefficients(1)),
+                       l.family.forces->state.data() + s, l.h, rows.per_row, from(transposed.pull(j), from_i),
+                       from(transposed.pull(j + down), to_i), ours ? blocks : nullptr, l.pitch);
         stiffest = std::max(stiffest, most);
-        if (turned.any_held(j) || turned.any_held(j + down)) add_held(l, rows, j, turned);
+        if (transposed.any_held(j) || transposed.any_held(j + down)) add_held(l, rows, j, transposed);
     }
     return stiffest;
 }
 
 // What nodes have by themselves.
-void load_nodes(const Loader& l, int j, const TurnedRows& turned) {
+void load_nodes(const Loader& l, int j, const TransposedRows& transposed) {
     GridSystem& out = l.out;
     std::fill_n(out.b.data() + l.at(-StencilGrid::margin, j, 3), 3 * l.pitch, 0.0);
     std::fill_n(out.x.data() + l.at(-StencilGrid::margin, j, 3), 3 * l.pitch, 0.0);
-    turned.fold(j);
-    const Row pull = turned.pull(j);
+    transposed.fold(j);
+    const Row pull = transposed.pull(j);
     float* const active = out.active.data() + l.at(0, j, 1);
     for (int i = 0; i < l.nu; ++i) {
         const std::uint32_t p = out.particle(i, j);
@@ -176,14 +176,14 @@ void load_nodes(const Loader& l, int j, const TurnedRows& turned) {
 
 // Rows [begin, end).
 double load_rows(const Loader& l, int begin, int end) {
-    TurnedRows turned(l);
+    TransposedRows transposed(l);
     double stiffest = 0;
     const int before = std::max(begin - 1, 0);
-    turned.turn(before);
+    transposed.load(before);
     for (int j = before; j < end; ++j) {
-        if (j + 1 < l.out.grid.nv) turned.turn(j + 1);
-        stiffest = std::max(stiffest, couple(l, j, j >= begin, turned));
-        if (j >= begin) load_nodes(l, j, turned);
+        if (j + 1 < l.out.grid.nv) transposed.load(j + 1);
+        stiffest = std::max(stiffest, couple(l, j, j >= begin, transposed));
+        if (j >= begin) load_nodes(l, j, transposed);
     }
     return stiffest;
 }

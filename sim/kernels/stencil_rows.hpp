@@ -31,7 +31,7 @@ struct Mass {
         return {m, zero, zero, m, zero, m};
     }
 };
-struct Ground {
+struct OwnBlock {
     static constexpr int numbers = 6;
     template <typename T>
     static UNRAVEL_INLINE V3<T> times(const float* self, int pitch, V3<T> p) {
@@ -50,7 +50,7 @@ struct Fine {
 };
 struct Coarse {
     using Coupling = Blocks;
-    using Self = Ground;
+    using Self = OwnBlock;
 };
 
 template <typename Level>

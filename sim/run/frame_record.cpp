@@ -83,7 +83,7 @@ void members(Archive& archive, Record& r) {
     });
 }
 
-class Writer {
+class RecordWriter {
 public:
     template <typename T>
     void operator()(const T& value) {
@@ -117,9 +117,9 @@ private:
     std::vector<std::uint8_t> bytes_;
 };
 
-class Reader {
+class RecordReader {
 public:
-    Reader(const std::filesystem::path& file, const std::uint8_t* data, std::size_t size)
+    RecordReader(const std::filesystem::path& file, const std::uint8_t* data, std::size_t size)
         : file_(file), data_(data), left_(size) {}
 
     template <typename T>
@@ -187,7 +187,7 @@ std::uint64_t state_hash(const ClothState& state) {
 }
 
 void write_record(const std::filesystem::path& file, std::uint64_t scene_hash, const FrameRecord& record) {
-    Writer out;
+    RecordWriter out;
     out.append(record_magic.data(), record_magic.size());
     out(scene_hash);
     members(out, record);
@@ -211,7 +211,7 @@ FrameRecord parse_record(std::span<const std::uint8_t> bytes, const std::filesys
     require(stored == hash_bytes(bytes.data(), bytes.size() - tail), file,
             "is damaged: its checksum does not match");
 
-    Reader in(file, bytes.data() + record_magic.size(), bytes.size() - record_magic.size() - tail);
+    RecordReader in(file, bytes.data() + record_magic.size(), bytes.size() - record_magic.size() - tail);
     std::uint64_t scene = 0;
     in(scene);
     require(scene == scene_hash, file, "was made from another scene");

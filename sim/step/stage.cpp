@@ -285,7 +285,7 @@ void iterate(const ClothModel& model, const StepOptions& options, StageTimer& ti
     double before = std::numeric_limits<double>::infinity();
     for (int k = 1;; ++k) {
         advance(1.0);
-        ws.constraints.fulfil();
+        ws.constraints.clear_prescribed();
         if (options.energy_limit && energy_at_end(model, ws) <= *options.energy_limit) {
             linear.dv.assign(model.size(), Vec3::Zero());
             return;

@@ -136,7 +136,7 @@ std::size_t RowForces::bytes() const {
 }
 
 void RowForces::place(std::span<const Vec3> x, std::span<const Vec3> v) {
-    for (RowCloth& cloth : memory_->cloths) take_rows(x, v, cloth);
+    for (RowCloth& cloth : memory_->cloths) load_rows(x, v, cloth);
 }
 
 void RowForces::mark(const ClothModel& model, std::span<const Vec3> end, std::vector<std::uint8_t>& taut) {

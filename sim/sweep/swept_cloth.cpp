@@ -52,7 +52,7 @@ void plan_substeps(const ClothModel& model, double t, double h, int count, std::
 }
 
 void take_state(const ClothState& state, SweptCloth& cloth) {
-    take_rows(state.x, state.v, cloth);
+    load_rows(state.x, state.v, cloth);
     if (cloth.stretches == 0) return;
     for (RowContacts& contacts : cloth.contacts) {
         contacts.clearance = -1;

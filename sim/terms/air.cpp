@@ -7,7 +7,7 @@ namespace unravel::sim {
 
 namespace {
 
-void blow(const ClothModel& model, const ForcesAt& at, ForceMemory& memory, std::span<Vec3> force) {
+void push_air(const ClothModel& model, const ForcesAt& at, ForceMemory& memory, std::span<Vec3> force) {
     AirMemory& own = memory.air;
     if (own.cells.start.size() != model.size() + 1) own.cells = air_cells(model);
     own.force.resize(own.cells.corners.size());
@@ -37,7 +37,7 @@ void list_wind(const Scene& scene, std::vector<Effect>& effects) {
 
 const ForceTerm air_term{.name = "air",
                          .acts = [](const ClothModel& model) { return model.wind.has_value(); },
-                         .push = blow,
+                         .push = push_air,
                          .rows = &air_rows,
                          .feeds = blows,
                          .time = &StageTimes::air,

@@ -4,7 +4,7 @@
 
 namespace unravel::sim {
 
-void take_rows(std::span<const Vec3> x, std::span<const Vec3> v, GridRows& cloth) {
+void load_rows(std::span<const Vec3> x, std::span<const Vec3> v, GridRows& cloth) {
     cloth.state.resize(cloth.rows() * 6 * cloth.stride);
     tbb::parallel_for(std::size_t{0}, cloth.rows(), [&](std::size_t row) {
         const std::size_t first = cloth.patch.first + row * cloth.columns();

@@ -45,6 +45,6 @@ struct GridRows {
 };
 
 /// Fills the rows with the cloth's share of x and v, (particles).
-void take_rows(std::span<const Vec3> x, std::span<const Vec3> v, GridRows& cloth);
+void load_rows(std::span<const Vec3> x, std::span<const Vec3> v, GridRows& cloth);
 
 }  // namespace unravel::sim

@@ -83,7 +83,7 @@ public:
     int read() const { return next_; }
     FrameRecord next() {
         FrameRecord record = run_.read(next_++);
-        recorder_.see(record);
+        recorder_.add(record);
         reports_.append(record.reports);
         return record;
     }
@@ -100,7 +100,7 @@ private:
     const CachedRun& run_;
     int next_ = 0;
     PageRecorder recorder_;
-    SpooledList<StepReport> reports_;
+    DiskList<StepReport> reports_;
 };
 
 // The clip's frames, and a page that shows the whole run. `range_only`: the frames of a task, which shares

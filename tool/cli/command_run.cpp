@@ -89,7 +89,7 @@ int make_run(const fs::path& file, const RunOptions& options, bool pictures) {
         if (static_cast<int>(recorder.frames().size()) > clip_options.last) return std::nullopt;
         try {
             std::optional<FrameRecord> record = source.next();
-            if (record) recorder.see(*record);
+            if (record) recorder.add(*record);
             return record;
         } catch (const SimulationError& error) {
             failure = error;

@@ -70,15 +70,15 @@ Plot kappa_histogram(const InspectedStep& step) {
     // Bars are as wide as bins whichever of them are there.
     double low = 0, high = 0;
     bool any = false;
-    const auto see = [&](double x) {
+    const auto extend = [&](double x) {
         low = any ? std::min(low, x) : x;
         high = any ? std::max(high, x) : x;
         any = true;
     };
     for (const PlotSeries& series : plot.series) {
-        for (const PlotPoint& p : series.points) see(p.x);
+        for (const PlotPoint& p : series.points) extend(p.x);
     }
-    for (const PlotGuide& guide : plot.guides) see(guide.value);
+    for (const PlotGuide& guide : plot.guides) extend(guide.value);
     plot.x.from = low - 1.5 / bins_per_decade;
     plot.x.to = high + 1.5 / bins_per_decade;
     plot.bar_width = 1 / bins_per_decade;

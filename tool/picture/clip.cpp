@@ -4,7 +4,7 @@
 
 #include <exception>
 
-#include "tool/picture/studio.hpp"
+#include "tool/picture/clip_renderer.hpp"
 #include "tool/picture/view.hpp"
 
 namespace unravel::tool {
@@ -12,40 +12,41 @@ namespace unravel::tool {
 ClipReport make_clip(const Scene& scene, const ClothModel& model, const Placement& placement,
                      const RunFolder& folder, const ClipOptions& options, const FrameSource& source,
                      const std::function<void(int frame)>& done) {
-    Studio studio(scene, model, placement, folder, options);
+    ClipRenderer clip(scene, model, placement, folder, options);
     std::exception_ptr stopped;  // by the source: what it has given is finished first
 
-    const auto take = [&](tbb::flow_control& flow) -> Passage* {
-        Passage* passage = nullptr;
+    const auto take = [&](tbb::flow_control& flow) -> FrameInFlight* {
+        FrameInFlight* slot = nullptr;
         try {
-            passage = studio.take(source);
+            slot = clip.take(source);
         } catch (...) {
             stopped = std::current_exception();
         }
-        if (!passage) flow.stop();
-        return passage;
+        if (!slot) flow.stop();
+        return slot;
     };
-    const auto draw = [&](Passage* passage) {
-        studio.draw(*passage);
-        return passage;
+    const auto draw = [&](FrameInFlight* slot) {
+        clip.draw(*slot);
+        return slot;
     };
-    const auto write = [&](Passage* passage) {
-        studio.write(*passage);
-        return passage;
+    const auto write = [&](FrameInFlight* slot) {
+        clip.write(*slot);
+        return slot;
     };
-    const auto encode = [&](Passage* passage) {
-        studio.encode(*passage);
-        const int frame = passage->record.frame;
-        studio.release(passage);
+    const auto encode = [&](FrameInFlight* slot) {
+        clip.encode(*slot);
+        const int frame = slot->record.frame;
+        clip.release(slot);
         done(frame);
     };
     using tbb::filter_mode;
-    tbb::parallel_pipeline(frames_under_way,
-                           tbb::make_filter<void, Passage*>(filter_mode::serial_in_order, take) &
-                               tbb::make_filter<Passage*, Passage*>(filter_mode::serial_in_order, draw) &
-                               tbb::make_filter<Passage*, Passage*>(filter_mode::parallel, write) &
-                               tbb::make_filter<Passage*, void>(filter_mode::serial_in_order, encode));
-    ClipReport report = studio.finish();
+    tbb::parallel_pipeline(
+        frames_in_flight,
+        tbb::make_filter<void, FrameInFlight*>(filter_mode::serial_in_order, take) &
+            tbb::make_filter<FrameInFlight*, FrameInFlight*>(filter_mode::serial_in_order, draw) &
+            tbb::make_filter<FrameInFlight*, FrameInFlight*>(filter_mode::parallel, write) &
+            tbb::make_filter<FrameInFlight*, void>(filter_mode::serial_in_order, encode));
+    ClipReport report = clip.finish();
     if (stopped) std::rethrow_exception(stopped);
     return report;
 }

@@ -95,8 +95,8 @@ std::string picture_stamp(const Scene& scene, const ClipOptions& options, const 
     return json.dump(2) + "\n";
 }
 
-bool claim_pictures(const RunFolder& folder, const std::string& view, const std::string& stamp,
-                    bool whole_clip) {
+bool keep_or_clear_pictures(const RunFolder& folder, const std::string& view, const std::string& stamp,
+                            bool whole_clip) {
     const fs::path file = stamp_file(folder, view);
     if (fs::exists(file)) {
         const std::vector<std::uint8_t> before = read_whole_file(file, largest_stamp);
@@ -113,8 +113,8 @@ bool claim_pictures(const RunFolder& folder, const std::string& view, const std:
     return false;
 }
 
-bool claim_range(const RunFolder& folder, const std::string& view, const std::string& stamp,
-                 const FrameRange& range) {
+bool keep_or_clear_range(const RunFolder& folder, const std::string& view, const std::string& stamp,
+                         const FrameRange& range) {
     const fs::path file = range_file(folder, view, range);
     if (text_if_there(file) == stamp) return true;
     fs::remove(file);

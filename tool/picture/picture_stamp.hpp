@@ -18,17 +18,17 @@ std::string picture_stamp(const Scene& scene, const ClipOptions& options, const 
 /// stamp and may be taken over. Otherwise, and where `whole_clip` is to be drawn, old pictures are removed
 /// and the stamp is put there; where only a part of the clip is, old pictures stay but will never be taken
 /// over. Throws OutputError.
-bool claim_pictures(const RunFolder& folder, const std::string& view, const std::string& stamp,
-                    bool whole_clip);
+bool keep_or_clear_pictures(const RunFolder& folder, const std::string& view, const std::string& stamp,
+                            bool whole_clip);
 
 /// Frames first … last, drawn by a task of their own while others draw others into the same folder.
 struct FrameRange {
     int first = 0, last = 0;
 };
 
-/// claim_pictures() for a range, by a stamp of its own. The range's old pictures are removed.
-bool claim_range(const RunFolder& folder, const std::string& view, const std::string& stamp,
-                 const FrameRange& range);
+/// keep_or_clear_pictures() for a range, by a stamp of its own. The range's old pictures are removed.
+bool keep_or_clear_range(const RunFolder& folder, const std::string& view, const std::string& stamp,
+                         const FrameRange& range);
 
 /// The stamp that vouches for a range's pictures, its own or the whole clip's; empty where there is none.
 std::string stamp_of_range(const RunFolder& folder, const std::string& view, const FrameRange& range);

@@ -57,7 +57,7 @@ Scale scale_of(const Plot& plot, bool along_x) {
     scale.log = axis.log;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     bool bars = false;
-    const auto see = [&](double value) {
+    const auto extend = [&](double value) {
         if (!scale.holds(value)) return;
         low = std::min(low, value);
         high = std::max(high, value);
@@ -66,14 +66,14 @@ Scale scale_of(const Plot& plot, bool along_x) {
         bars = bars || series.style == SeriesStyle::bars;
         for (const PlotPoint& p : series.points) {
             if (along_x) {
-                for (const double value : {p.x, p.left, p.right}) see(value);
+                for (const double value : {p.x, p.left, p.right}) extend(value);
             } else {
-                for (const double value : {p.y, p.low, p.high}) see(value);
+                for (const double value : {p.y, p.low, p.high}) extend(value);
             }
         }
     }
     for (const PlotGuide& guide : plot.guides) {
-        if (guide.horizontal != along_x) see(guide.value);
+        if (guide.horizontal != along_x) extend(guide.value);
     }
     if (low > high) low = scale.log ? 1 : 0, high = scale.log ? 10 : 1;
     if (scale.log) {

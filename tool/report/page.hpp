@@ -35,7 +35,7 @@ struct PageFrame {
 class PageRecorder {
 public:
     PageRecorder(const ClothModel& model, const std::filesystem::path& folder);
-    void see(const FrameRecord& record);
+    void add(const FrameRecord& record);
     const std::vector<PageFrame>& frames() const { return frames_; }
     /// A frame's largest components, as component_table() sorts them.
     std::vector<ComponentRow> rows(const PageFrame& frame) const {
@@ -47,7 +47,7 @@ private:
     std::vector<std::array<std::uint32_t, 2>> edges_;
     ComponentColors colors_;
     std::vector<PageFrame> frames_;
-    SpooledList<ComponentRow> rows_;
+    DiskList<ComponentRow> rows_;
 };
 
 /// What the page tells besides frames.

@@ -100,7 +100,7 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
 
 Previews::Previews(int width, int height, int pictures, std::size_t budget,
                    const std::filesystem::path& folder)
-    : budget_(budget), share_(budget / static_cast<std::size_t>(std::max(pictures, 1))), spool_(folder) {
+    : budget_(budget), share_(budget / static_cast<std::size_t>(std::max(pictures, 1))), buffer_(folder) {
     const double pixels =
         static_cast<double>(budget) / (base64_growth * bytes_per_pixel * std::max(pictures, 1));
     const double shape = static_cast<double>(width) / height;
@@ -117,7 +117,7 @@ void Previews::add(const std::string& view, int frame, const Image& image) {
     }
     const std::lock_guard lock(mutex_);
     bytes_ += text.size();
-    pictures_[view][frame] = {spool_.append(std::as_bytes(std::span(text))), text.size()};
+    pictures_[view][frame] = {buffer_.append(std::as_bytes(std::span(text))), text.size()};
 }
 
 std::vector<int> Previews::frames(const std::string& view) const {
@@ -130,7 +130,7 @@ std::vector<int> Previews::frames(const std::string& view) const {
 std::string Previews::text(const std::string& view, int frame) const {
     const Place& place = pictures_.at(view).at(frame);
     std::string text(place.size, '\0');
-    spool_.read(place.begin, std::as_writable_bytes(std::span(text)));
+    buffer_.read(place.begin, std::as_writable_bytes(std::span(text)));
     return text;
 }
 

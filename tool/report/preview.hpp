@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/spool.hpp"
+#include "base/disk_buffer.hpp"
 #include "render/image.hpp"
 #include "tool/base/names.hpp"
 
@@ -49,7 +49,7 @@ private:
         std::uint64_t begin = 0;
         std::size_t size = 0;
     };
-    Spool spool_;
+    DiskBuffer buffer_;
     std::map<std::string, std::map<int, Place>> pictures_;
 };
 

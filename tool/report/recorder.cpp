@@ -15,7 +15,7 @@ constexpr std::size_t rows_shown = 24;
 PageRecorder::PageRecorder(const ClothModel& model, const std::filesystem::path& folder)
     : model_(model), edges_(drawn_edges(model)), rows_(folder) {}
 
-void PageRecorder::see(const FrameRecord& record) {
+void PageRecorder::add(const FrameRecord& record) {
     const std::vector<Rgb>& colors = colors_.assign(record.component, edges_);
     PageFrame frame;
     frame.number = record.frame;

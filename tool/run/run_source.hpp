@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/spool.hpp"
+#include "base/disk_buffer.hpp"
 #include "sim/run/simulate.hpp"
 #include "tool/base/names.hpp"
 #include "tool/folder/run_folder.hpp"
@@ -45,7 +45,7 @@ private:
     Simulation& simulation_;
     int cached_, frame_ = 0;
     tbb::task_arena arena_;
-    SpooledList<StepReport> reports_;
+    DiskList<StepReport> reports_;
     std::vector<std::uint64_t> hashes_;  // one per frame
     double seconds_ = 0;
     std::chrono::steady_clock::time_point stats_written_ = std::chrono::steady_clock::now();

@@ -101,7 +101,7 @@ double cost_or_never(const AccuracyCurve* curve, double error) {
 struct Ratios {
     double least = std::numeric_limits<double>::infinity(), most = 0, at_most = 0;
     bool any() const { return most > 0; }
-    void see(double ratio, double level) {
+    void add(double ratio, double level) {
         least = std::min(least, ratio);
         if (ratio > most) most = ratio, at_most = level;
     }
@@ -127,9 +127,9 @@ std::string following(const AccuracyStudy& study, Integrator integrator) {
         const double better = std::min(of_explicit, of_implicit);
         if (cost == never || better == never) continue;
         const double ratio = cost / better;
-        if (of_implicit < never) to_implicit.see(cost / of_implicit, level);
+        if (of_implicit < never) to_implicit.add(cost / of_implicit, level);
         if (ratio > to_better.most) better_at_most = explicit_better ? "explicit" : "implicit";
-        to_better.see(ratio, level);
+        to_better.add(ratio, level);
         if (ratio > same_time) {
             within = false;
         } else if (within) {
@@ -303,7 +303,7 @@ std::array<Plot, 2> contrast_plots(const AccuracyStudy& soft, const AccuracyStud
     plots[0].title = fmt::format("What accuracy costs: {}", soft.scene.name);
     plots[1].title = fmt::format("The same cloth {:g} times stiffer", times);
     double low[2] = {1e300, 1e300}, high[2] = {0, 0};
-    const auto see = [&](int axis, double value) {
+    const auto extend = [&](int axis, double value) {
         if (!std::isfinite(value) || value <= 0) return;
         low[axis] = std::min(low[axis], value);
         high[axis] = std::max(high[axis], value);
@@ -312,11 +312,11 @@ std::array<Plot, 2> contrast_plots(const AccuracyStudy& soft, const AccuracyStud
         std::erase_if(plot.series, [](const PlotSeries& s) { return s.style == SeriesStyle::points; });
         for (const PlotSeries& series : plot.series) {
             for (const PlotPoint& p : series.points) {
-                see(0, p.x);
-                see(1, p.y);
+                extend(0, p.x);
+                extend(1, p.y);
             }
         }
-        for (const PlotGuide& guide : plot.guides) see(1, guide.value);
+        for (const PlotGuide& guide : plot.guides) extend(1, guide.value);
     }
     for (Plot& plot : plots) {
         plot.x.from = low[0] / 1.3, plot.x.to = high[0] * 1.3;

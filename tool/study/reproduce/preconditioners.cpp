@@ -69,7 +69,7 @@ struct Large {
     double saved = 1, saved_of_block = 1;
     double c_ratio =
         std::numeric_limits<double>::infinity();  ///< iterations with C over those without, least
-    void see(const Iterations& i) {
+    void add(const Iterations& i) {
         if (i.particles < large_problem) return;
         ++sizes;
         saved = std::min(saved, 1 - i.mean[2] / i.mean[0]);
@@ -115,7 +115,7 @@ Claim preconditioner_claim(const ReproduceScale& scale) {
                                            {"block", largest.mean[1]},
                                            {"constrained_block", largest.mean[2]},
                                            {"partly_constrained_share", largest.partly}});
-        large.see(largest);
+        large.add(largest);
     }
     const auto fewer = [](double share) {
         return fmt::format("{:.0f}% {}", 100 * std::abs(share), share >= 0 ? "fewer" : "more");

@@ -110,7 +110,7 @@ public:
         lags_ = scene.solver.integrator == Integrator::explicit_;
     }
     /// Largest rise so far, over the energy that there is.
-    double see(const Simulation& simulation, const StepReport& report) {
+    double add(const Simulation& simulation, const StepReport& report) {
         double energy = report.kinetic + report.potential;
         const bool swings = swing_ && !trace_of(simulation.model, simulation.ws).coupled;
         Shadow shadow;
@@ -147,7 +147,7 @@ void measure_run(const HardCase& hard, const Scene& scene, int frames, Simulatio
             out.cg_most = std::max(out.cg_most, r.cg_iterations_max);
             out.unconverged += !r.converged;
             out.again += r.rejected > 0;
-            out.energy_rise = energy.see(simulation, r);
+            out.energy_rise = energy.add(simulation, r);
             const StepToStep::Shares shares = step_to_step.next(simulation);
             out.flicker = std::max(out.flicker, shares.flicker);
             if (4 * (simulation.frame + 1) < 3 * frames) continue;

@@ -18,10 +18,10 @@
 namespace unravel::tool {
 
 /// Frames between source and end of the pipeline at any time: one per stage and one to take up unevenness.
-inline constexpr std::size_t frames_under_way = 5;
+inline constexpr std::size_t frames_in_flight = 5;
 
 /// A frame on its way. Reused, so that a long clip allocates no more than a short one.
-struct Passage {
+struct FrameInFlight {
     FrameRecord record;
     std::vector<DrawFrame> exposures;
     std::vector<Image> pictures;  ///< (views)
@@ -29,13 +29,13 @@ struct Passage {
 };
 
 /// Context and renderer, made, used and destroyed on the thread that owns them.
-class DrawingRoom {
+class RendererOnThread {
 public:
-    /// `scene` must outlive the room. Throws RendererError.
-    DrawingRoom(const DrawScene& scene, const DeviceChoice& device, const RenderSettings& settings);
-    ~DrawingRoom();
-    DrawingRoom(const DrawingRoom&) = delete;
-    DrawingRoom& operator=(const DrawingRoom&) = delete;
+    /// `scene` must outlive it. Throws RendererError.
+    RendererOnThread(const DrawScene& scene, const DeviceChoice& device, const RenderSettings& settings);
+    ~RendererOnThread();
+    RendererOnThread(const RendererOnThread&) = delete;
+    RendererOnThread& operator=(const RendererOnThread&) = delete;
 
     /// Does `work` on the thread and waits for it; what it throws is thrown here.
     void run(std::function<void()> work) { thread_.run(std::move(work)); }
@@ -50,29 +50,29 @@ private:
 
 /// Everything between a frame record and its files: the stages of make_clip()'s pipeline. Stages of one frame
 /// follow each other; each stage but write() works on one frame at a time.
-class Studio {
+class ClipRenderer {
 public:
-    Studio(const Scene& scene, const ClothModel& model, const Placement& placement, const RunFolder& folder,
-           const ClipOptions& options);
-    Studio(const Studio&) = delete;
-    Studio& operator=(const Studio&) = delete;
+    ClipRenderer(const Scene& scene, const ClothModel& model, const Placement& placement,
+                 const RunFolder& folder, const ClipOptions& options);
+    ClipRenderer(const ClipRenderer&) = delete;
+    ClipRenderer& operator=(const ClipRenderer&) = delete;
 
-    Passage* take(const FrameSource& source);  ///< null: the clip is over
-    void draw(Passage& passage);
-    void write(Passage& passage);
-    void encode(Passage& passage);
-    void release(Passage* passage);
+    FrameInFlight* take(const FrameSource& source);  ///< null: the clip is over
+    void draw(FrameInFlight& slot);
+    void write(FrameInFlight& slot);
+    void encode(FrameInFlight& slot);
+    void release(FrameInFlight* slot);
     ClipReport finish();
 
 private:
     void plan_shots();
-    void claim();
-    void see(const FrameRecord& record);
-    bool lies_there(const Passage& passage, std::size_t view) const;
-    bool take_over(const Passage& passage, std::size_t view, Image& picture) const;
-    Image& image_of(Passage& passage, std::size_t shot) const;
-    void draw_shot(Passage& passage, std::size_t shot);
-    void compose(Passage& passage, std::size_t view) const;
+    void prepare_folders();
+    void remember(const FrameRecord& record);
+    bool lies_there(const FrameInFlight& slot, std::size_t view) const;
+    bool take_over(const FrameInFlight& slot, std::size_t view, Image& picture) const;
+    Image& image_of(FrameInFlight& slot, std::size_t shot) const;
+    void draw_shot(FrameInFlight& slot, std::size_t shot);
+    void compose(FrameInFlight& slot, std::size_t view) const;
 
     const Scene& scene_;
     const ClothModel& model_;
@@ -88,11 +88,11 @@ private:
     ClothState previous_;  // of the frame before, where pictures are blurred by motion
     bool has_previous_ = false;
     DrawScene drawn_;
-    DrawingRoom room_;
-    std::unique_ptr<Legend> legend_;  // used on the room's thread
+    RendererOnThread drawing_;
+    std::unique_ptr<Legend> legend_;  // used on its thread
     std::vector<std::unique_ptr<VideoWriter>> videos_;
-    std::array<Passage, frames_under_way> passages_;
-    tbb::concurrent_bounded_queue<Passage*> free_;
+    std::array<FrameInFlight, frames_in_flight> in_flight_;
+    tbb::concurrent_bounded_queue<FrameInFlight*> free_;
     std::mutex mutex_;  // of report_.write: pictures are written by several tasks at once
     ClipReport report_;
 };

@@ -1,4 +1,4 @@
-#include "tool/picture/studio.hpp"
+#include "tool/picture/clip_renderer.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -33,7 +33,8 @@ VideoSettings video_settings(const Scene& scene, const ClipOptions& options, Lay
     return settings;
 }
 
-DrawingRoom::DrawingRoom(const DrawScene& scene, const DeviceChoice& device, const RenderSettings& settings) {
+RendererOnThread::RendererOnThread(const DrawScene& scene, const DeviceChoice& device,
+                                   const RenderSettings& settings) {
     thread_.run([&] {
         auto context = std::make_unique<GlContext>(device);
         renderer_ = std::make_unique<Renderer>(*context, scene, settings);
@@ -41,33 +42,33 @@ DrawingRoom::DrawingRoom(const DrawScene& scene, const DeviceChoice& device, con
     });
 }
 
-DrawingRoom::~DrawingRoom() {
+RendererOnThread::~RendererOnThread() {
     thread_.run([&] {
         renderer_.reset();
         context_.reset();
     });
 }
 
-Studio::Studio(const Scene& scene, const ClothModel& model, const Placement& placement,
-               const RunFolder& folder, const ClipOptions& options)
+ClipRenderer::ClipRenderer(const Scene& scene, const ClothModel& model, const Placement& placement,
+                           const RunFolder& folder, const ClipOptions& options)
     : scene_(scene),
       model_(model),
       folder_(folder),
       options_(options),
       edges_(drawn_edges(model)),
       drawn_(make_draw_scene(scene, model, placement, options.textures)),
-      room_(drawn_, options.device, render_settings(scene, options)) {
+      drawing_(drawn_, options.device, render_settings(scene, options)) {
     plan_shots();
-    report_.renderer = room_.renderer().description();
-    report_.renderer_summary = room_.context().summary();
-    report_.software = room_.context().software();
+    report_.renderer = drawing_.renderer().description();
+    report_.renderer_summary = drawing_.context().summary();
+    report_.software = drawing_.context().software();
     if (scene.look.legend) legend_ = std::make_unique<Legend>(scene, scene.clip.size[1]);
-    for (Passage& passage : passages_) {
-        passage.pictures.resize(options.views.size());
-        passage.parts.resize(shots_.size());
-        free_.push(&passage);
+    for (FrameInFlight& slot : in_flight_) {
+        slot.pictures.resize(options.views.size());
+        slot.parts.resize(shots_.size());
+        free_.push(&slot);
     }
-    claim();
+    prepare_folders();
     if (options.video_ending.empty()) return;
     for (const ClipView& view : options.views) {
         const std::filesystem::path file = folder.video(view.name, options.video_ending);
@@ -77,7 +78,7 @@ Studio::Studio(const Scene& scene, const ClothModel& model, const Placement& pla
     }
 }
 
-void Studio::plan_shots() {
+void ClipRenderer::plan_shots() {
     for (std::size_t v = 0; v < options_.views.size(); ++v) {
         std::vector<std::size_t>& of_view = view_shots_.emplace_back();
         const std::vector<Shot> shots = tool::shots_of(options_.views[v]);
@@ -92,7 +93,7 @@ void Studio::plan_shots() {
     }
 }
 
-void Studio::claim() {
+void ClipRenderer::prepare_folders() {
     reusable_.assign(options_.views.size(), options_.vouched);
     if (options_.vouched) return;
     if (!options_.keep_pictures && !options_.reuse_pictures) return;
@@ -101,14 +102,14 @@ void Studio::claim() {
     for (std::size_t v = 0; v < options_.views.size(); ++v) {
         const std::string& name = options_.views[v].name;
         const bool same = options_.shares_folder
-                              ? claim_range(folder_, name, stamp, {options_.first, options_.last})
-                              : claim_pictures(folder_, name, stamp, whole);
+                              ? keep_or_clear_range(folder_, name, stamp, {options_.first, options_.last})
+                              : keep_or_clear_pictures(folder_, name, stamp, whole);
         reusable_[v] = options_.reuse_pictures && same;
     }
 }
 
 /// What the frames after this one have to know of it.
-void Studio::see(const FrameRecord& record) {
+void ClipRenderer::remember(const FrameRecord& record) {
     if (scene_.look.motion_blur == 1) return;
     previous_.t = record.state.t;
     previous_.x = record.state.x;
@@ -116,7 +117,7 @@ void Studio::see(const FrameRecord& record) {
     has_previous_ = true;
 }
 
-Passage* Studio::take(const FrameSource& source) {
+FrameInFlight* ClipRenderer::take(const FrameSource& source) {
     for (;;) {
         std::optional<FrameRecord> record = source();
         if (!record) return nullptr;
@@ -125,94 +126,94 @@ Passage* Studio::take(const FrameSource& source) {
         // Colours follow components through time, so frames that are not drawn are looked at too.
         const std::vector<Rgb>& colors = steady_.follow(colors_.assign(record->component, edges_));
         if (frame < options_.first) {
-            see(*record);
+            remember(*record);
             continue;
         }
-        Passage* passage = nullptr;
-        free_.pop(passage);
-        passage->record = std::move(*record);
-        make_exposures(scene_, model_, passage->record, has_previous_ ? &previous_ : nullptr, colors,
-                       passage->exposures);
-        see(passage->record);
-        return passage;
+        FrameInFlight* slot = nullptr;
+        free_.pop(slot);
+        slot->record = std::move(*record);
+        make_exposures(scene_, model_, slot->record, has_previous_ ? &previous_ : nullptr, colors,
+                       slot->exposures);
+        remember(slot->record);
+        return slot;
     }
 }
 
-Image& Studio::image_of(Passage& passage, std::size_t shot) const {
-    return shot_view_[shot] >= 0 ? passage.pictures[static_cast<std::size_t>(shot_view_[shot])]
-                                 : passage.parts[shot];
+Image& ClipRenderer::image_of(FrameInFlight& slot, std::size_t shot) const {
+    return shot_view_[shot] >= 0 ? slot.pictures[static_cast<std::size_t>(shot_view_[shot])]
+                                 : slot.parts[shot];
 }
 
 // On the renderer's thread.
-void Studio::draw_shot(Passage& passage, std::size_t shot) {
+void ClipRenderer::draw_shot(FrameInFlight& slot, std::size_t shot) {
     const Camera& camera = scene_.cameras[shots_[shot].camera];
     const std::vector<double> times =
-        exposure_times(scene_, passage.exposures.size() > 1 ? passage.record.frame : 0);
-    for (std::size_t e = 0; e < passage.exposures.size(); ++e) {
-        const double t = passage.exposures.size() > 1 ? times[e] : frame_time(scene_, passage.record.frame);
-        passage.exposures[e].camera = camera_at(scene_, camera, t);
+        exposure_times(scene_, slot.exposures.size() > 1 ? slot.record.frame : 0);
+    for (std::size_t e = 0; e < slot.exposures.size(); ++e) {
+        const double t = slot.exposures.size() > 1 ? times[e] : frame_time(scene_, slot.record.frame);
+        slot.exposures[e].camera = camera_at(scene_, camera, t);
     }
-    Image& image = image_of(passage, shot);
-    room_.renderer().submit(shots_[shot].style, passage.exposures);
-    room_.renderer().collect(image);
-    if (legend_ && shots_[shot].style != DrawStyle::textured) legend_->add(passage.record, image);
+    Image& image = image_of(slot, shot);
+    drawing_.renderer().submit(shots_[shot].style, slot.exposures);
+    drawing_.renderer().collect(image);
+    if (legend_ && shots_[shot].style != DrawStyle::textured) legend_->add(slot.record, image);
 }
 
-void Studio::draw(Passage& passage) {
-    room_.run([&] {
+void ClipRenderer::draw(FrameInFlight& slot) {
+    drawing_.run([&] {
         StageTimer timer;
         std::vector<char> wanted(shots_.size(), 0);
         for (std::size_t v = 0; v < options_.views.size(); ++v) {
-            if (lies_there(passage, v)) continue;
+            if (lies_there(slot, v)) continue;
             for (const std::size_t shot : view_shots_[v]) wanted[shot] = 1;
         }
         for (std::size_t shot = 0; shot < shots_.size(); ++shot)
-            if (wanted[shot]) draw_shot(passage, shot);
+            if (wanted[shot]) draw_shot(slot, shot);
         timer.lap(report_.draw);
     });
 }
 
 /// Puts a view of several shots together, beside each other.
-void Studio::compose(Passage& passage, std::size_t view) const {
+void ClipRenderer::compose(FrameInFlight& slot, std::size_t view) const {
     const std::vector<std::size_t>& shots = view_shots_[view];
     if (shots.size() == 1) return;
-    Image& out = passage.pictures[view];
+    Image& out = slot.pictures[view];
     const std::size_t count = shots.size();
     const auto row_bytes = std::size_t{4} * static_cast<std::size_t>(scene_.clip.size[0]);
     out.width = static_cast<int>(count) * scene_.clip.size[0];
     out.height = scene_.clip.size[1];
     out.pixels.resize(row_bytes * count * static_cast<std::size_t>(out.height));
     for (std::size_t s = 0; s < count; ++s) {
-        const Image& part = image_of(passage, shots[s]);
+        const Image& part = image_of(slot, shots[s]);
         for (int y = 0; y < out.height; ++y)
             std::memcpy(out.at(static_cast<int>(s) * scene_.clip.size[0], y), part.at(0, y), row_bytes);
     }
 }
 
-void Studio::write(Passage& passage) {
+void ClipRenderer::write(FrameInFlight& slot) {
     StageTimer timer;
     const std::size_t count = options_.views.size();
     std::vector<char> taken_over(count, 0);
     for (std::size_t v = 0; v < count; ++v) {
-        if (!lies_there(passage, v)) continue;
+        if (!lies_there(slot, v)) continue;
         Image there;
-        if (take_over(passage, v, there)) {
+        if (take_over(slot, v, there)) {
             taken_over[v] = 1;
-            passage.pictures[v] = std::move(there);
+            slot.pictures[v] = std::move(there);
         } else {
-            room_.run([&] {
-                for (const std::size_t shot : view_shots_[v]) draw_shot(passage, shot);
+            drawing_.run([&] {
+                for (const std::size_t shot : view_shots_[v]) draw_shot(slot, shot);
             });
         }
     }
     for (std::size_t v = 0; v < count; ++v)
-        if (!taken_over[v]) compose(passage, v);
+        if (!taken_over[v]) compose(slot, v);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t v) {
         const ClipView& view = options_.views[v];
         if (options_.keep_pictures && !taken_over[v])
-            write_png(folder_.picture(view.name, passage.record.frame), passage.pictures[v],
+            write_png(folder_.picture(view.name, slot.record.frame), slot.pictures[v],
                       {.alpha = scene_.look.transparent});
-        if (options_.picture) options_.picture(view, passage.record.frame, passage.pictures[v]);
+        if (options_.picture) options_.picture(view, slot.record.frame, slot.pictures[v]);
     });
     double spent = 0;
     timer.lap(spent);
@@ -220,19 +221,19 @@ void Studio::write(Passage& passage) {
     report_.write += spent;
 }
 
-void Studio::encode(Passage& passage) {
+void ClipRenderer::encode(FrameInFlight& slot) {
     StageTimer timer;
     tbb::parallel_for(std::size_t{0}, videos_.size(),
-                      [&](std::size_t v) { videos_[v]->add(passage.pictures[v]); });
+                      [&](std::size_t v) { videos_[v]->add(slot.pictures[v]); });
     timer.lap(report_.encode);
 }
 
-void Studio::release(Passage* passage) {
+void ClipRenderer::release(FrameInFlight* slot) {
     ++report_.frames;
-    free_.push(passage);
+    free_.push(slot);
 }
 
-ClipReport Studio::finish() {
+ClipReport ClipRenderer::finish() {
     if (report_.frames == 0) report_.videos.clear();
     for (const auto& video : videos_) {
         if (report_.frames > 0) video->finish();
@@ -240,15 +241,15 @@ ClipReport Studio::finish() {
     return report_;
 }
 
-bool Studio::lies_there(const Passage& passage, std::size_t view) const {
+bool ClipRenderer::lies_there(const FrameInFlight& slot, std::size_t view) const {
     return reusable_[view] != 0 &&
-           std::filesystem::exists(folder_.picture(options_.views[view].name, passage.record.frame));
+           std::filesystem::exists(folder_.picture(options_.views[view].name, slot.record.frame));
 }
 
 // False: the picture is damaged, or not of this clip's size.
-bool Studio::take_over(const Passage& passage, std::size_t view, Image& picture) const {
+bool ClipRenderer::take_over(const FrameInFlight& slot, std::size_t view, Image& picture) const {
     try {
-        picture = read_png(folder_.picture(options_.views[view].name, passage.record.frame));
+        picture = read_png(folder_.picture(options_.views[view].name, slot.record.frame));
     } catch (const InputError&) {
         return false;
     }

@@ -1,4 +1,4 @@
-#include "base/spool.hpp"
+#include "base/disk_buffer.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -16,7 +16,7 @@ int open_nameless(const std::filesystem::path& folder) {
     if (descriptor >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != ENOENT && errno != EINVAL))
         return descriptor;
     // Network file systems know no files without a name: one that loses it at once.
-    std::string name = (folder / ".spool.XXXXXX").string();
+    std::string name = (folder / ".buffer.XXXXXX").string();
     const int named = ::mkostemp(name.data(), O_CLOEXEC);
     if (named >= 0) ::unlink(name.c_str());
     return named;
@@ -24,22 +24,23 @@ int open_nameless(const std::filesystem::path& folder) {
 
 }  // namespace
 
-Spool::Spool(std::filesystem::path folder) : folder_(std::move(folder)), descriptor_(open_nameless(folder_)) {
+DiskBuffer::DiskBuffer(std::filesystem::path folder)
+    : folder_(std::move(folder)), descriptor_(open_nameless(folder_)) {
     if (descriptor_ < 0) throw OutputError(folder_, errno);
 }
 
-Spool::~Spool() {
+DiskBuffer::~DiskBuffer() {
     ::close(descriptor_);
 }
 
-std::uint64_t Spool::append(std::span<const std::byte> bytes) {
+std::uint64_t DiskBuffer::append(std::span<const std::byte> bytes) {
     const std::uint64_t place = size_;
     write(place, bytes);
     size_ += bytes.size();
     return place;
 }
 
-void Spool::write(std::uint64_t place, std::span<const std::byte> bytes) {
+void DiskBuffer::write(std::uint64_t place, std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
         const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(place));
         if (written < 0 && errno == EINTR) continue;
@@ -49,7 +50,7 @@ void Spool::write(std::uint64_t place, std::span<const std::byte> bytes) {
     }
 }
 
-void Spool::read(std::uint64_t place, std::span<std::byte> into) const {
+void DiskBuffer::read(std::uint64_t place, std::span<std::byte> into) const {
     while (!into.empty()) {
         const ssize_t got = ::pread(descriptor_, into.data(), into.size(), static_cast<off_t>(place));
         if (got < 0 && errno == EINTR) continue;

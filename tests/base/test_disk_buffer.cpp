@@ -1,4 +1,4 @@
-#include "base/spool.hpp"
+#include "base/disk_buffer.hpp"
 
 #include <sys/resource.h>
 
@@ -13,7 +13,7 @@ using namespace unravel;
 
 TEST_CASE("a spooled list gives back what it took, and its folder shows nothing", "[files]") {
     const TemporaryFolder folder;
-    SpooledList<std::uint64_t> list(folder.path());
+    DiskList<std::uint64_t> list(folder.path());
     std::vector<std::uint64_t> numbers(1000);
     std::iota(numbers.begin(), numbers.end(), std::uint64_t{7});
     list.append(numbers);
@@ -27,16 +27,16 @@ TEST_CASE("a spooled list gives back what it took, and its folder shows nothing"
     CHECK(std::filesystem::is_empty(folder.path()));
 }
 
-TEST_CASE("a spool without room or folder says so", "[files]") {
+TEST_CASE("a buffer without room or folder says so", "[files]") {
     const TemporaryFolder folder;
-    CHECK_THROWS_AS(Spool(folder.path() / "none"), OutputError);
-    Spool spool(folder.path());
+    CHECK_THROWS_AS(DiskBuffer(folder.path() / "none"), OutputError);
+    DiskBuffer buffer(folder.path());
     const std::vector<std::byte> bytes(5000);
-    spool.append(bytes);
+    buffer.append(bytes);
     {
         const FileSizeLimit limit(6000);
-        CHECK_THROWS_AS(spool.append(bytes), OutputError);
+        CHECK_THROWS_AS(buffer.append(bytes), OutputError);
     }
     std::vector<std::byte> more(5001);
-    CHECK_THROWS_AS(spool.read(2000, more), InputError);
+    CHECK_THROWS_AS(buffer.read(2000, more), InputError);
 }
