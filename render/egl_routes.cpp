@@ -73,6 +73,19 @@ std::string too_little_memory() {
                        left / 1e6, needed / 1e6);
 }
 
+constexpr const char* raise_limit = "raise the limit: ulimit -v unlimited";
+
+// A route that is not there. Under a limit on memory what lacks is not a vendor's library but room to load
+// it.
+RendererAttempt missing_route(std::string route, std::string reason, std::string fix) {
+    const std::string little = too_little_memory();
+    if (!little.empty()) {
+        reason = little;
+        fix = raise_limit;
+    }
+    return {.route = std::move(route), .reason = std::move(reason), .fix = std::move(fix)};
+}
+
 }  // namespace
 
 CurrentContext::~CurrentContext() {
@@ -107,9 +120,8 @@ int CurrentContext::max_samples() const {
 std::vector<Route> list_routes(const Egl& egl, std::vector<RendererAttempt>& attempts) {
     std::vector<Route> routes;
     if (!egl.GetPlatformDisplayEXT || !egl.has(EGL_NO_DISPLAY, "EGL_EXT_platform_base")) {
-        attempts.push_back({.route = "EGL",
-                            .reason = "libEGL finds no vendor's library (no EGL_EXT_platform_base)",
-                            .fix = reinstall_vendor});
+        attempts.push_back(missing_route("EGL", "libEGL finds no vendor's library (no EGL_EXT_platform_base)",
+                                         reinstall_vendor));
         return routes;
     }
     const bool enumerates = egl.has(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") ||
@@ -117,12 +129,12 @@ std::vector<Route> list_routes(const Egl& egl, std::vector<RendererAttempt>& att
     EGLint count = 0;
     if (!enumerates || !egl.QueryDevicesEXT || !egl.QueryDevicesEXT(0, nullptr, &count) || count == 0) {
         attempts.push_back(
-            {.route = "EGL devices",
-             .reason = enumerates ? "eglQueryDevicesEXT lists no device: no vendor library was found"
-                                  : "this libEGL cannot list devices (EGL_EXT_device_enumeration)",
-             .fix = fmt::format("{}; see that /usr/share/glvnd/egl_vendor.d holds a file such as "
-                                "50_mesa.json and that __EGL_VENDOR_LIBRARY_FILENAMES is not set",
-                                install_egl)});
+            missing_route("EGL devices",
+                          enumerates ? "eglQueryDevicesEXT lists no device: no vendor library was found"
+                                     : "this libEGL cannot list devices (EGL_EXT_device_enumeration)",
+                          fmt::format("{}; see that /usr/share/glvnd/egl_vendor.d holds a file such as "
+                                      "50_mesa.json and that __EGL_VENDOR_LIBRARY_FILENAMES is not set",
+                                      install_egl)));
         count = 0;
     }
     std::vector<EGLDeviceEXT> devices(count);
@@ -156,7 +168,7 @@ std::unique_ptr<CurrentContext> reach(const Egl& egl, const Route& route, Render
     const bool software = route.device < 0 || route.name.find("(software)") != route.name.npos;
     if (software) {
         attempt.reason = too_little_memory();
-        attempt.fix = "raise the limit: ulimit -v unlimited";
+        attempt.fix = raise_limit;
         if (!attempt.reason.empty()) return nullptr;
         attempt.fix.clear();
     }

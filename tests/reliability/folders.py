@@ -3,8 +3,8 @@
 import shutil
 import struct
 
-from run_files import check_same, content
-from tool_runs import OUTPUT, SCENE, USAGE, finish, job, run, start
+from run_files import check_same, content, video_frames
+from tool_runs import FRAMES, OUTPUT, SCENE, USAGE, finish, job, run, start
 
 
 def test_a_changed_scene_is_refused_with_what_changed(reference, folder):
@@ -43,13 +43,16 @@ def test_damaged_states_are_simulated_again(reference, folder):
 
 
 def test_broken_caches_are_named_where_only_they_tell(reference, folder):
-    def broken(name, break_it):
+    def broken(name, break_it, mends=True):
         out = folder / name
         shutil.copytree(reference.folder, out)
         break_it(out)
         for command in (["render", out, "--device", "software"], ["inspect", out, "--frame", "7", "--device", "software"]):
             text = finish(start(command), OUTPUT)
             assert "frame_0006.state" in text or "frame_0007.state" in text, text
+            assert "--resume` makes it again" in text or not mends, text
+        # What can't be drawn any more has been drawn.
+        assert video_frames(out / "textured.mp4") == FRAMES
         shutil.rmtree(out)
 
     def replace(data, number=None):
@@ -64,14 +67,14 @@ def test_broken_caches_are_named_where_only_they_tell(reference, folder):
     broken("flipped", replace(lambda data: data[:200] + bytes([data[200] ^ 4]) + data[201:]))
     broken("nonsense", replace(lambda data: b"nonsense" * 1000))
     broken("longer", replace(lambda data: data + b"more"))
-    broken("foreign", replace(lambda data: data[:8] + struct.pack("<Q", 1) + data[16:]))
+    broken("foreign", replace(lambda data: data[:8] + struct.pack("<Q", 1) + data[16:]), mends=False)
 
     def folder_in_its_place(out):
         for k in (6, 7):
             (out / f"cache/frame_{k:04d}.state").unlink()
             (out / f"cache/frame_{k:04d}.state").mkdir()
 
-    broken("a_folder", folder_in_its_place)
+    broken("a_folder", folder_in_its_place, mends=False)
 
 
 def test_pictures_of_another_look_are_not_taken_for_this_one(reference, folder):

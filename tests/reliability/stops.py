@@ -8,7 +8,8 @@ import signal
 import time
 
 from run_files import check_same, check_whole, content, leftovers, video_frames
-from tool_runs import (DONE, HERE, INTERRUPTED, PATIENCE, SIMULATION, USAGE, finish, job, run, start, wait_for_frames)
+from tool_runs import (DONE, HERE, PATIENCE, SIMULATION, USAGE, finish, job, run, start, stopped_by,
+                       wait_for_frames)
 
 
 def test_signals_finish_the_videos_and_resume_ends_with_the_same_bytes(reference, folder):
@@ -17,7 +18,7 @@ def test_signals_finish_the_videos_and_resume_ends_with_the_same_bytes(reference
         process = start(job(out))
         wait_for_frames(process, out, 4)
         process.send_signal(number)
-        finish(process, INTERRUPTED)
+        finish(process, stopped_by(number))
         check_whole(out)
         assert not leftovers(out), leftovers(out)
         made = json.loads((out / "run.json").read_text())
@@ -37,9 +38,21 @@ def test_an_early_signal_leaves_a_folder_that_resumes(reference, folder):
     while not out.exists() and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.0005)
     process.send_signal(signal.SIGTERM)
-    finish(process, INTERRUPTED)
+    # Before it has begun with anything there is nothing to finish, and the signal itself ends it.
+    process.communicate(timeout=PATIENCE)
+    assert process.returncode in (stopped_by(signal.SIGTERM), -signal.SIGTERM), process.returncode
     run(job(out, "--resume", command="simulate"))
     reference.check(out, "after an early signal", videos=False)
+
+
+def test_signals_that_the_caller_ignores_do_not_stop_a_run(reference, folder):
+    for number in (signal.SIGHUP, signal.SIGINT):  # as nohup and a shell's & start it
+        out = folder / signal.Signals(number).name
+        process = start(job(out), preexec_fn=lambda: signal.signal(number, signal.SIG_IGN))
+        wait_for_frames(process, out, 4)
+        process.send_signal(number)
+        finish(process, DONE)
+        reference.check(out, f"with {signal.Signals(number).name} ignored")
 
 
 def test_kills_at_random_leave_whole_files_and_resume_ends_with_the_same_bytes(reference, folder):
@@ -78,7 +91,7 @@ def test_two_runs_do_not_share_a_folder(reference, folder):
     text = run(job(out, "--resume", "--set", "clip.duration=40", command="simulate"), USAGE)
     assert "another" in text, text
     first.send_signal(signal.SIGINT)
-    finish(first, INTERRUPTED)
+    finish(first, stopped_by(signal.SIGINT))
 
 
 def test_a_run_that_cannot_go_on_keeps_its_frames_and_says_why(reference, folder):

@@ -13,9 +13,11 @@ import sys
 import tempfile
 import time
 
+import clips
 import command_lines
 import disks
 import folders
+import limits
 import memory
 import stops
 import tool_runs
@@ -23,7 +25,7 @@ import tool_runs
 
 def main():
     tool_runs.TOOL = os.path.abspath(sys.argv[1])
-    tests = [(name, test) for stage in (stops, disks, folders, command_lines, memory)
+    tests = [(name, test) for stage in (stops, clips, disks, limits, folders, command_lines, memory)
              for name, test in vars(stage).items() if name.startswith("test_")]
     if sys.argv[2:]:
         tests = [(n, f) for n, f in tests if any(part in n for part in sys.argv[2:])]

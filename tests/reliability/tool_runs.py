@@ -10,8 +10,13 @@ HERE = pathlib.Path(__file__).resolve().parent
 SCENE = HERE / "tiny.toml"
 TOOL = ""
 FRAMES = 15  # of tiny.toml
-DONE, USAGE, SCENE_ERROR, NO_ENCODER, SIMULATION, OUTPUT, INTERRUPTED = 0, 2, 3, 4, 5, 6, 130
+DONE, USAGE, SCENE_ERROR, NO_ENCODER, SIMULATION, OUTPUT = 0, 2, 3, 4, 5, 6
 PATIENCE = 120  # s, for anything that waits; only ever reached where something hangs
+
+
+def stopped_by(number):
+    """Exit code of a run that a signal asked to stop."""
+    return 128 + number
 
 
 def start(arguments, **options):

@@ -14,7 +14,7 @@ enum Exit : int {
     exit_no_renderer = 4,
     exit_simulation = 5,
     exit_output = 6,
-    exit_interrupted = 130,
+    exit_signal = 128,  ///< and the number of the signal that stopped it: 130 for Ctrl-C
 };
 
 /// A command line that contradicts itself or names what does not exist. Exit code 2.

@@ -154,22 +154,22 @@ int accuracy(const AccuracyOptions& options) {
             return do_on_cluster(pieces.cluster, options.output, work);
         }
         if (options.reference)
-            return study_reference(scene, root, budget, keep_on) ? exit_done : exit_interrupted;
+            return study_reference(scene, root, budget, keep_on) ? exit_done : InterruptWatch::exit_code();
         if (pieces.point >= 0)
-            return time_accuracy_point(scene, root, pieces.point, keep_on) ? exit_done : exit_interrupted;
+            return time_accuracy_point(scene, root, pieces.point, keep_on) ? exit_done
+                                                                           : InterruptWatch::exit_code();
     }
 
     std::string missing;
     AccuracyStudy study = pieces.collect ? collect_accuracy(scene, root, missing)
                                          : study_accuracy(scene, root, budget, keep_on);
     if (study.points.empty() && missing.empty()) {
-        if (keep_on())
-            fmt::print(
-                stderr,
-                "unravel: {:g} minutes ended before one point was timed; the same command goes on, with "
-                "--budget for more at once\n",
-                options.budget);
-        return exit_interrupted;
+        if (!keep_on()) return InterruptWatch::exit_code();
+        fmt::print(stderr,
+                   "unravel: {:g} minutes ended before one point was timed; the same command goes on, with "
+                   "--budget for more at once\n",
+                   options.budget);
+        return exit_simulation;
     }
     const bool same_processor = study.points.empty() || conclude(study, root, options);
     if (!missing.empty())
@@ -207,7 +207,7 @@ int accuracy(const AccuracyOptions& options) {
     } else if (!options.output.quiet) {
         print_files(files);
     }
-    if (!keep_on()) return exit_interrupted;
+    if (!keep_on()) return InterruptWatch::exit_code();
     return same_processor ? exit_done : exit_simulation;
 }
 

@@ -73,7 +73,7 @@ int export_run(const ExportOptions& options) {
                    written.size() > 1 ? fmt::format(" … {}", written.back().filename().string()) : "",
                    source.first, source.last, source.fps);
     }
-    return InterruptWatch::requested() ? exit_interrupted : exit_done;
+    return InterruptWatch::requested() ? InterruptWatch::exit_code() : exit_done;
 }
 
 }  // namespace

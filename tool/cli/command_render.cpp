@@ -14,6 +14,7 @@
 #include "tool/cli/common_options.hpp"
 #include "tool/cli/frame_ranges.hpp"
 #include "tool/cli/picture_options.hpp"
+#include "tool/cli/render_place.hpp"
 #include "tool/folder/cached_run.hpp"
 #include "tool/folder/folder_lock.hpp"
 #include "tool/picture/clip.hpp"
@@ -63,7 +64,7 @@ int draw_turntable(const RenderOptions& options, const CachedRun& run, const Sce
                                         [&](int done) { progress.show(done + 1, 0); });
     progress.finish();
     print_files(options.output, folder, clip_options, report);
-    return InterruptWatch::requested() ? exit_interrupted : exit_done;
+    return InterruptWatch::requested() ? InterruptWatch::exit_code() : exit_done;
 }
 
 int send(const RenderOptions& options, const Scene& scene, const CachedRun& run, const RunFolder& folder,
@@ -123,25 +124,37 @@ int draw_clip(const RenderOptions& options, const CachedRun& run, const Scene& s
         if (last < clip_options.last)
             throw FolderError(
                 fmt::format("'{}' holds no usable frame {}", run.folder.root.string(), last + 1));
-        return InterruptWatch::requested() ? exit_interrupted : exit_done;
+        return InterruptWatch::requested() ? InterruptWatch::exit_code() : exit_done;
     }
-    // The page shows the whole run, also where only some frames were drawn anew.
-    while (cached.read() < frames) cached.next();
     nlohmann::ordered_json about = earlier_run(run.folder);
     about["renderer"] = {{"name", report.renderer}, {"why", report.renderer_summary}};
     about["encoder"] = report.encoders;
-    write_report_page(scene, run.model, folder, cached.recorder(), cached.reports(), previews,
-                      page_facts(about));
+    const auto write_page = [&] {
+        write_report_page(scene, run.model, folder, cached.recorder(), cached.reports(), previews,
+                          page_facts(about));
+    };
+    if (InterruptWatch::requested()) {
+        if (!options.output.quiet)
+            fmt::print("interrupted: {} of {} frames drawn{}{}\n", report.frames, last - first + 1,
+                       report.kept.empty() ? "" : "; ", report.kept);
+        about["status"] = "interrupted";
+        // The page of a clip that stays is as true as before.
+        if (report.kept.empty()) write_page();
+        return InterruptWatch::exit_code();
+    }
+    // The page shows the whole run, also where only some frames were drawn anew.
+    while (cached.read() < frames) cached.next();
+    write_page();
     print_files(options.output, folder, clip_options, report);
-    if (!options.output.quiet) fmt::print("  {}\n", folder.report().string());
-    if (InterruptWatch::requested()) return exit_interrupted;
+    if (!options.output.quiet)
+        fmt::print("{}  {}\n", report.kept.empty() ? "" : "  " + report.kept + "\n",
+                   folder.report().string());
     // A state that is damaged hides the frames from it on: named when all before it are drawn.
     if (last < clip_options.last && std::filesystem::exists(run.folder.record(frames))) run.read(frames);
     return exit_done;
 }
 
 int render(const RenderOptions& options) {
-    const InterruptWatch watch;
     const CachedRun run = open_cached_run(options.run, options.overrides);
     Scene scene = run.scene;
     // The folder's scene.toml has lost the name that the scene came by.
@@ -152,7 +165,10 @@ int render(const RenderOptions& options) {
     const bool turns = options.pictures.turntable > 0;
     const int still = options.pictures.still >= 0 ? options.pictures.still : scene.clip.frames() - 1;
     if (turns) make_turntable(scene, clip_options, options.pictures.turntable, still);
-    const RunFolder folder{options.folder.empty() ? run.folder.root : options.folder};
+    const RunFolder folder = options.folder.empty() ? place_of_render(options.pictures, options.overrides,
+                                                                      run.folder, scene, clip_options)
+                                                    : RunFolder{options.folder};
+    clip_options.keep_longer = options.folder.empty();
     const PieceOptions& pieces = options.pieces;
     if (turns && !pieces.whole())
         throw UsageError("--turntable is drawn on one machine: it does not go with --slurm");
@@ -176,6 +192,8 @@ int render(const RenderOptions& options) {
     }
     const int frames = run.usable_frames();
     run.require(turns ? 0 : clip_options.first, frames);
+    // Until here a signal ends the program: there is nothing to finish.
+    const InterruptWatch watch;
     if (turns) return draw_turntable(options, run, scene, folder, clip_options, std::min(still, frames - 1));
     return draw_clip(options, run, scene, folder, clip_options, frames, range_only);
 }
@@ -186,7 +204,9 @@ void add_render(CommandLine& line) {
     const auto [command, o] = line.add("render", "pictures and videos from a cached run", render);
     o.words = line.words();
     command.add_option("RUN_DIR", o.run, "folder of the run")->required();
-    command.add_option("-o", o.folder, "folder for the pictures (default: the run's own)");
+    command.add_option(
+        "-o", o.folder,
+        "folder for the pictures (default: the run's own; of a part or another look, in its renders/)");
     add_overrides(command, o.overrides, "key=value of [camera], [look] or clip.size");
     add_picture_options(command, o.pictures);
     add_piece_options(command, o.pieces);

@@ -53,7 +53,6 @@ void print_summary(const OutputOptions& options, const RunFolder& folder,
 
 int make_run(const fs::path& file, const RunOptions& options, bool pictures) {
     const auto begin = std::chrono::steady_clock::now();
-    const InterruptWatch watch;
     Scene scene = load_scene(file, options.overrides);
     const RunFolder folder{options.folder.empty() ? fs::path("output") / scene.name : options.folder};
     ClipOptions clip_options = clip_options_of(options.pictures, scene);
@@ -67,6 +66,8 @@ int make_run(const fs::path& file, const RunOptions& options, bool pictures) {
     const Existing existing = options.force    ? Existing::replace
                               : options.resume ? Existing::resume
                                                : Existing::refuse;
+    // Until here a signal ends the program: there is nothing to finish.
+    const InterruptWatch watch;
     const FolderLock lock(folder.root);
     const std::uint64_t hash = open_run(folder, scene, existing, clip_options.textures);
 
@@ -112,6 +113,7 @@ int make_run(const fs::path& file, const RunOptions& options, bool pictures) {
         write_report_page(scene, simulation.model, folder, recorder, source.reports(), previews,
                           page_facts(json));
         print_summary(options.output, folder, json);
+        if (report && !report->kept.empty() && options.output.talks()) fmt::print("  {}\n", report->kept);
     };
     if (pictures) {
         Placement placement;
@@ -126,7 +128,7 @@ int make_run(const fs::path& file, const RunOptions& options, bool pictures) {
         throw *failure;
     }
     conclude(InterruptWatch::requested() ? "interrupted" : "complete");
-    return InterruptWatch::requested() ? exit_interrupted : exit_done;
+    return InterruptWatch::requested() ? InterruptWatch::exit_code() : exit_done;
 }
 
 int run(const RunOptions& options) {

@@ -6,7 +6,6 @@
 
 #include "base/whole_file.hpp"
 #include "tool/base/exit.hpp"
-#include "tool/base/interrupt.hpp"
 #include "tool/base/program.hpp"
 #include "tool/cli/commands.hpp"
 #include "tool/cli/common_options.hpp"
@@ -190,7 +189,6 @@ int do_all(const StabilityOptions& options, const Study& study) {
     if (options.pictures) context.emplace(parse_device_choice(options.device));
     std::vector<HardLine> lines;
     for (const HardCase& hard : study.cases) {
-        if (InterruptWatch::requested()) return exit_interrupted;
         lines.push_back(do_case(hard, study, context));
         if (silent) continue;
         fmt::print("{}\n", terminal_line(lines.back()));
@@ -198,7 +196,6 @@ int do_all(const StabilityOptions& options, const Study& study) {
     }
     std::vector<StabilityMap> maps;
     for (const std::string& integrator : study.maps) {
-        if (InterruptWatch::requested()) break;
         maps.push_back(make_stability_map(study.map_scene(), integrator));
         if (!silent) tell(maps.back());
     }
@@ -206,7 +203,6 @@ int do_all(const StabilityOptions& options, const Study& study) {
 }
 
 int stability(const StabilityOptions& options) {
-    const InterruptWatch watch;
     const Study study = study_of(options);
     const PieceOptions& pieces = options.pieces;
     if (pieces.cluster.submit) return send(options, study);

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <system_error>
 
 #include "base/file_errors.hpp"
 #include "render/gl_context.hpp"
@@ -11,6 +14,8 @@
 #include "sim/step/explicit_limit.hpp"
 #include "sim/step/step.hpp"
 #include "tool/base/exit.hpp"
+#include "tool/base/interrupt.hpp"
+#include "tool/base/machine.hpp"
 #include "tool/cluster/cluster.hpp"
 #include "tool/folder/run_folder.hpp"
 
@@ -24,7 +29,19 @@ OutputError no_standard_output() {
 
 }  // namespace
 
+namespace {
+
+// The standard library and TBB each have their own way to say that a thread could not be had.
+bool no_more_threads(const std::exception& error) {
+    const std::string words = std::generic_category().message(EAGAIN);
+    return std::string_view(error.what()).find(words) != std::string_view::npos;
+}
+
+}  // namespace
+
 int guarded(const std::function<int()>& command) {
+    // A file beyond the limit for files is an error that names the file, not a signal.
+    std::signal(SIGXFSZ, SIG_IGN);
     // Not fmt::print: it throws where standard error is closed, and the exit code is to be right even then.
     const auto say = [](const std::string& text) { std::fputs(text.c_str(), stderr); };
     const auto failed = [&](const std::exception& error, int code) {
@@ -57,10 +74,17 @@ int guarded(const std::function<int()>& command) {
         return failed(error, exit_simulation);
     } catch (const SimulationError& error) {
         return failed(error, exit_simulation);
+    } catch (const Stopped&) {
+        return InterruptWatch::exit_code();
     } catch (const std::bad_alloc&) {
-        say("unravel: memory ran out; `unravel check` tells what a scene needs\n");
+        say(fmt::format("unravel: memory ran out: {}; `unravel check` tells what a scene needs\n",
+                        memory_room().told()));
         return exit_output;
     } catch (const std::exception& error) {
+        if (no_more_threads(error)) {
+            say(fmt::format("unravel: threads ran out: {}; --threads 1 needs fewer\n", thread_limit()));
+            return exit_output;
+        }
         // fmt::print's words for standard output name no file.
         if (std::ferror(stdout) != 0) return failed(no_standard_output(), exit_output);
         return failed(error, exit_output);

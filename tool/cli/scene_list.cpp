@@ -153,7 +153,7 @@ int do_here(const RunOptions& options, const std::vector<ListedScene>& list, Run
     std::vector<std::string> failed;
     for (const ListedScene& listed : list) {
         const int ended = guarded([&] { return one(listed.file, options_for(options, listed)); });
-        if (ended == exit_interrupted) return ended;
+        if (ended > exit_signal) return ended;
         if (ended != exit_done) failed.push_back(listed.scene.name);
         if (code == exit_done) code = ended;
     }

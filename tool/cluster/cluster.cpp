@@ -48,7 +48,8 @@ std::vector<JobScript> scripts_of(const ClusterWork& work) {
          "missing is named.",
          command + " --collect",
          {},
-         false});
+         false,
+         true});
     return scripts;
 }
 
@@ -110,7 +111,7 @@ int wait_and_tell(const OutputOptions& output, const ClusterWork& work,
                    "the jobs go on; `scancel {}` ends those that wait and sends those that run back "
                    "to wait\n",
                    fmt::join(jobs, " "));
-        return exit_interrupted;
+        return InterruptWatch::exit_code();
     }
     const fs::path log = job_log(results, work.undivided ? work.name : work.name + "_collect");
     if (fs::exists(log)) fmt::print("{}", read_whole_text(log, largest_log));

@@ -27,6 +27,16 @@ if ((status > 128 && ${SLURM_RESTART_COUNT:-0} < 10)); then scontrol requeue "$S
 exit "$status"
 )";
 
+// Slurm lets a job go that waits for others as soon as all of those have ended, and those that were killed
+// have for a moment: until they are back in the queue. They are seen there from before they end.
+constexpr std::string_view comes_last = R"sh(
+# A task that was killed is back in the queue by now. While any of job $1 is there, this one goes back too.
+if [[ -n "${1-}" && -n "$(squeue --noheader --jobs="$1" 2>/dev/null)" ]]; then
+    scontrol requeue "$SLURM_JOB_ID"
+    exit
+fi
+)sh";
+
 // A directive's value: sbatch takes quotes off like a shell does, and knows no other escape.
 std::string directive(const std::string& option, const std::string& value) {
     const bool plain = value.find_first_of(" \t'#") == value.npos;
@@ -100,6 +110,7 @@ std::string job_script_text(const JobScript& script, const fs::path& tool, const
             "# be killed at any time and run again. By hand: sbatch this file; some tasks only: sbatch "
             "--array=3,5.\n";
     }
+    if (script.collects) text += comes_last;
     if (!script.alone)
         text += "export LP_NUM_THREADS=\"${SLURM_CPUS_PER_TASK:-1}\"  # of the software renderer\n";
     text += fmt::format("{} {} &\n", shell_quoted(tool.string()), script.command);

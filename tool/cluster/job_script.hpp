@@ -16,6 +16,8 @@ struct JobScript {
     std::string command;  ///< shell text that follows the tool's path; a task finds its index in it by name
     std::vector<int> tasks;  ///< indices, ascending; empty: a single job
     bool alone = false;      ///< is timed: nothing else is to run on its node
+    bool collects =
+        false;  ///< its argument is the job that it has to come after, however often that is queued
 };
 
 /// The folder for a work's scripts and logs.

@@ -85,6 +85,7 @@ std::string slurm_submit(const std::string& script, const std::string& after, bo
         words.emplace_back("--kill-on-invalid-dep=yes");
     }
     words.push_back(script);
+    if (!after.empty()) words.push_back(after);
     // NUMBER or NUMBER;CLUSTER, after what the site has to say
     std::string text = must(std::move(words));
     while (!text.empty() && text.back() == '\n') text.pop_back();

@@ -12,7 +12,7 @@ namespace unravel::tool {
 /// words where it fails or is not there.
 
 /// Puts a script into the queue, to start once the jobs `after` have ended: with success, or (`any`) however.
-/// Returns the job's number.
+/// Their number is the script's argument. Returns the job's number.
 std::string slurm_submit(const std::string& script, const std::string& after = {}, bool any = true);
 
 /// A job, or task of an array, that waits or runs.

@@ -2,12 +2,18 @@
 
 #include <fmt/format.h>
 
+#include "base/file_errors.hpp"
+
 #include "sim/scene_file/load.hpp"
 
 namespace unravel::tool {
 
 FrameRecord CachedRun::read(int frame) const {
-    return read_record(folder.record(frame), hash, model.size(), model.springs.size());
+    try {
+        return read_record(folder.record(frame), hash, model.size(), model.springs.size());
+    } catch (const InputError&) {
+        throw InputError(folder.record(frame), why_unusable(folder, frame, hash));
+    }
 }
 
 int CachedRun::usable_frames() const {

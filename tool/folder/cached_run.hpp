@@ -20,7 +20,7 @@ struct CachedRun {
     Placement placement;
     ClothModel model;
 
-    /// Throws InputError where the frame is damaged or of another scene.
+    /// Throws InputError with why_unusable() where it can't be read.
     FrameRecord read(int frame) const;
     /// Frames 0 … k−1 that can be read; reads them all.
     int usable_frames() const;

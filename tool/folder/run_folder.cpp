@@ -142,7 +142,8 @@ std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing exi
         // Only what a run writes is removed; anything else in the folder is the user's.
         std::error_code error;
         // The scene goes last: what is half removed when the program ends still counts as a run.
-        for (const fs::path& path : {folder.cache(), folder.frames()}) fs::remove_all(path, error);
+        for (const fs::path& path : {folder.cache(), folder.frames(), folder.next()})
+            fs::remove_all(path, error);
         for (const char* ending : {".mp4", ".webm", ".mkv", ".gif"}) {
             for (std::size_t camera = 0; camera < scene.cameras.size(); ++camera) {
                 for (const Layout layout : all_layouts)

@@ -23,6 +23,8 @@ struct RunFolder {
     std::filesystem::path cache() const { return root / "cache"; }
     std::filesystem::path frames() const { return root / "frames"; }
     std::filesystem::path failure() const { return root / "failure"; }
+    /// Where a clip is drawn that is to replace the one that is there, until it is whole.
+    std::filesystem::path next() const { return root / "next"; }
     std::filesystem::path record(int frame) const;
     /// `view`: its name, see ClipView.
     std::filesystem::path picture(const std::string& view, int frame) const;

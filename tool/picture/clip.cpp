@@ -4,6 +4,7 @@
 
 #include <exception>
 
+#include "tool/base/interrupt.hpp"
 #include "tool/picture/clip_renderer.hpp"
 #include "tool/picture/view.hpp"
 
@@ -46,7 +47,7 @@ ClipReport make_clip(const Scene& scene, const ClothModel& model, const Placemen
             tbb::make_filter<FrameInFlight*, FrameInFlight*>(filter_mode::serial_in_order, draw) &
             tbb::make_filter<FrameInFlight*, FrameInFlight*>(filter_mode::parallel, write) &
             tbb::make_filter<FrameInFlight*, void>(filter_mode::serial_in_order, encode));
-    ClipReport report = clip.finish();
+    ClipReport report = clip.finish(!stopped && !InterruptWatch::requested());
     if (stopped) std::rethrow_exception(stopped);
     return report;
 }

@@ -32,6 +32,7 @@ struct ClipOptions {
     bool keep_pictures = true;    ///< write PNG frames
     bool shares_folder = false;   ///< other ranges of frames are drawn into the folder at the same time
     bool vouched = false;         ///< what lies there is this clip's: its stamp is not asked for
+    bool keep_longer = true;      ///< a part of a clip does not replace a video of more frames
     /// Called with every finished picture, by several threads at once; empty: nobody looks.
     std::function<void(const ClipView& view, int frame, const Image& picture)> picture;
 };
@@ -40,9 +41,10 @@ struct ClipOptions {
 struct ClipReport {
     std::string renderer, renderer_summary;
     bool software = true;
-    std::vector<std::string> encoders;       ///< a line per video
-    std::vector<std::string> videos;         ///< file names
-    int frames = 0;                          ///< finished
+    std::vector<std::string> encoders;  ///< a line per video
+    std::vector<std::string> videos;    ///< file names
+    int frames = 0;                     ///< finished
+    std::string kept;                   ///< in words: what was there before and has stayed; empty: nothing
     double draw = 0, write = 0, encode = 0;  ///< s spent in each stage
 };
 
@@ -53,7 +55,8 @@ using FrameSource = std::function<std::optional<FrameRecord>()>;
 /// source → draw → PNG → video, each frame in at most one of them. One thread owns the GL context for life; a
 /// frame waits in memory only while a stage is ahead of the next. Videos are finished also where the source
 /// ends early or throws, so that they play as far as they got; what the source threw is thrown on. `done` is
-/// called after each finished frame, in order.
+/// called after each finished frame, in order. Pictures of another look and longer videos are replaced only
+/// once what replaces them is whole: until then it is drawn beside them, in next/.
 ClipReport make_clip(const Scene& scene, const ClothModel& model, const Placement& placement,
                      const RunFolder& folder, const ClipOptions& options, const FrameSource& source,
                      const std::function<void(int frame)>& done);

@@ -1,11 +1,14 @@
 #include "tool/picture/clip_renderer.hpp"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstring>
 
+#include "base/whole_file.hpp"
 #include "render/png.hpp"
+#include "render/video_read.hpp"
 #include "tool/picture/picture_stamp.hpp"
 #include "tool/picture/view.hpp"
 
@@ -53,6 +56,7 @@ ClipRenderer::ClipRenderer(const Scene& scene, const ClothModel& model, const Pl
                            const RunFolder& folder, const ClipOptions& options)
     : scene_(scene),
       model_(model),
+      target_(folder),
       folder_(folder),
       options_(options),
       edges_(drawn_edges(model)),
@@ -68,10 +72,11 @@ ClipRenderer::ClipRenderer(const Scene& scene, const ClothModel& model, const Pl
         slot.parts.resize(shots_.size());
         free_.push(&slot);
     }
+    choose_folder();
     prepare_folders();
     if (options.video_ending.empty()) return;
     for (const ClipView& view : options.views) {
-        const std::filesystem::path file = folder.video(view.name, options.video_ending);
+        const std::filesystem::path file = folder_.video(view.name, options.video_ending);
         videos_.push_back(std::make_unique<VideoWriter>(file, video_settings(scene, options, view.layout)));
         report_.encoders.push_back(videos_.back()->description());
         report_.videos.push_back(file.filename().string());
@@ -93,17 +98,41 @@ void ClipRenderer::plan_shots() {
     }
 }
 
+bool ClipRenderer::draws_whole_clip() const {
+    return options_.first == 0 && options_.last == scene_.clip.frames() - 1;
+}
+
+// Beside what is there, where that is a clip drawn otherwise.
+void ClipRenderer::choose_folder() {
+    if (!options_.keep_pictures || options_.vouched || options_.shares_folder || !draws_whole_clip()) return;
+    const std::string stamp = picture_stamp(scene_, options_, report_.renderer);
+    const RunFolder next{target_.next()};
+    if (std::ranges::none_of(options_.views, [&](const ClipView& view) {
+            return holds_other_pictures(target_, view.name, stamp);
+        })) {
+        std::filesystem::remove_all(next.root);
+        return;
+    }
+    if (!options_.reuse_pictures) std::filesystem::remove_all(next.root);
+    std::filesystem::create_directories(next.frames());
+    remove_partial_files(next.root);
+    remove_partial_files(next.frames());
+    folder_ = next;
+}
+
 void ClipRenderer::prepare_folders() {
     reusable_.assign(options_.views.size(), options_.vouched);
     if (options_.vouched) return;
     if (!options_.keep_pictures && !options_.reuse_pictures) return;
     const std::string stamp = picture_stamp(scene_, options_, report_.renderer);
-    const bool whole = options_.first == 0 && options_.last == scene_.clip.frames() - 1;
+    const bool whole = draws_whole_clip();
     for (std::size_t v = 0; v < options_.views.size(); ++v) {
         const std::string& name = options_.views[v].name;
-        const bool same = options_.shares_folder
+        // Where none are written, what lies there is what it was.
+        const bool same = !options_.keep_pictures ? !holds_other_pictures(folder_, name, stamp)
+                          : options_.shares_folder
                               ? keep_or_clear_range(folder_, name, stamp, {options_.first, options_.last})
-                              : keep_or_clear_pictures(folder_, name, stamp, whole);
+                              : stamp_pictures(folder_, name, stamp, whole);
         reusable_[v] = options_.reuse_pictures && same;
     }
 }
@@ -233,12 +262,48 @@ void ClipRenderer::release(FrameInFlight* slot) {
     free_.push(slot);
 }
 
-ClipReport ClipRenderer::finish() {
+// What plays longer stays, unless this is all that was asked for.
+void ClipRenderer::finish_video(std::size_t view, bool all) {
+    const std::filesystem::path file = folder_.video(options_.views[view].name, options_.video_ending);
+    const bool replaces = all && (draws_whole_clip() || !options_.keep_longer);
+    const int before = replaces || !std::filesystem::exists(file) ? 0 : count_video_frames(file);
+    if (before <= videos_[view]->frames()) return videos_[view]->finish();
+    report_.kept = fmt::format("{} of {} frames stays as it was", file.filename().string(), before);
+}
+
+ClipReport ClipRenderer::finish(bool ended) {
+    const bool all = report_.frames == options_.last - options_.first + 1;
     if (report_.frames == 0) report_.videos.clear();
-    for (const auto& video : videos_) {
-        if (report_.frames > 0) video->finish();
+    for (std::size_t v = 0; v < videos_.size(); ++v) {
+        if (report_.frames > 0) finish_video(v, all);
+    }
+    if (folder_.root != target_.root) {
+        // A run that has fewer frames than its scene says may have had them all in the old look too.
+        const bool as_many = std::ranges::all_of(options_.views, [&](const ClipView& view) {
+            return report_.frames >= count_pictures(target_, view.name);
+        });
+        if (all || (ended && as_many)) {
+            adopt();
+        } else {
+            report_.kept =
+                fmt::format("the clip that was there stays as it was; what is drawn so far is in {}",
+                            folder_.root.string());
+        }
+    } else if (all && draws_whole_clip() && options_.keep_pictures) {
+        for (const ClipView& view : options_.views) remove_pictures_beyond(target_, view.name, options_.last);
     }
     return report_;
+}
+
+// What was drawn beside the old clip takes its place.
+void ClipRenderer::adopt() {
+    for (const ClipView& view : options_.views) {
+        adopt_pictures(folder_, target_, view.name);
+        if (!videos_.empty())
+            std::filesystem::rename(folder_.video(view.name, options_.video_ending),
+                                    target_.video(view.name, options_.video_ending));
+    }
+    std::filesystem::remove_all(folder_.root);
 }
 
 bool ClipRenderer::lies_there(const FrameInFlight& slot, std::size_t view) const {

@@ -62,11 +62,16 @@ public:
     void write(FrameInFlight& slot);
     void encode(FrameInFlight& slot);
     void release(FrameInFlight* slot);
-    ClipReport finish();
+    /// `ended`: the clip came to its end, and was not stopped on the way.
+    ClipReport finish(bool ended);
 
 private:
     void plan_shots();
+    void choose_folder();
     void prepare_folders();
+    bool draws_whole_clip() const;
+    void finish_video(std::size_t view, bool all);
+    void adopt();
     void remember(const FrameRecord& record);
     bool lies_there(const FrameInFlight& slot, std::size_t view) const;
     bool take_over(const FrameInFlight& slot, std::size_t view, Image& picture) const;
@@ -76,7 +81,8 @@ private:
 
     const Scene& scene_;
     const ClothModel& model_;
-    const RunFolder& folder_;
+    const RunFolder target_;  // where the clip belongs
+    RunFolder folder_;        // where it is drawn
     const ClipOptions& options_;
     std::vector<Shot> shots_;     // each drawn once a frame
     std::vector<int> shot_view_;  // (shots) the view that is this shot alone; −1: none

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/file_errors.hpp"
 #include "base/hash.hpp"
 #include "base/whole_file.hpp"
 #include "sim/run/frame_record.hpp"
@@ -64,11 +66,31 @@ std::string texture_hash(const std::string& texture) {
     }
 }
 
-bool is_picture(const std::string& name, const std::string& view) {
+// The frame that a file is the picture of; −1: it is none of this view's.
+int frame_of_picture(const std::string& name, const std::string& view) {
     const std::string start = view + "_";
-    if (!name.starts_with(start) || !name.ends_with(".png")) return false;
-    return std::all_of(name.begin() + static_cast<std::ptrdiff_t>(start.size()), name.end() - 4,
-                       [](unsigned char c) { return std::isdigit(c) != 0; });
+    if (!name.starts_with(start) || !name.ends_with(".png")) return -1;
+    int frame = -1;
+    const char *first = name.data() + start.size(), *last = name.data() + name.size() - 4;
+    const auto [end, error] = std::from_chars(first, last, frame);
+    return error == std::errc() && end == last && *first != '-' ? frame : -1;
+}
+
+// (frame, file) of a view.
+std::vector<std::pair<int, fs::path>> pictures_of(const RunFolder& folder, const std::string& view) {
+    std::vector<std::pair<int, fs::path>> pictures;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder.frames(), error)) {
+        const int frame = frame_of_picture(entry.path().filename().string(), view);
+        if (frame >= 0) pictures.emplace_back(frame, entry.path());
+    }
+    return pictures;
+}
+
+void move_file(const fs::path& from, const fs::path& to) {
+    std::error_code error;
+    fs::rename(from, to, error);
+    if (error) throw OutputError(to, error.value());
 }
 
 }  // namespace
@@ -95,8 +117,16 @@ std::string picture_stamp(const Scene& scene, const ClipOptions& options, const 
     return json.dump(2) + "\n";
 }
 
-bool keep_or_clear_pictures(const RunFolder& folder, const std::string& view, const std::string& stamp,
-                            bool whole_clip) {
+bool holds_other_pictures(const RunFolder& folder, const std::string& view, const std::string& stamp) {
+    return text_if_there(stamp_file(folder, view)) != stamp && !pictures_of(folder, view).empty();
+}
+
+int count_pictures(const RunFolder& folder, const std::string& view) {
+    return static_cast<int>(pictures_of(folder, view).size());
+}
+
+bool stamp_pictures(const RunFolder& folder, const std::string& view, const std::string& stamp,
+                    bool whole_clip) {
     const fs::path file = stamp_file(folder, view);
     if (fs::exists(file)) {
         const std::vector<std::uint8_t> before = read_whole_file(file, largest_stamp);
@@ -105,12 +135,27 @@ bool keep_or_clear_pictures(const RunFolder& folder, const std::string& view, co
         fs::remove(file);
     }
     remove_range_files(folder, view);
-    if (!whole_clip) return false;
-    for (const auto& entry : fs::directory_iterator(folder.frames())) {
-        if (is_picture(entry.path().filename().string(), view)) fs::remove(entry.path());
-    }
-    write_whole_file(file, stamp);
+    if (whole_clip) write_whole_file(file, stamp);
     return false;
+}
+
+void adopt_pictures(const RunFolder& from, const RunFolder& to, const std::string& view) {
+    // First of all: were the program to end on the way, nothing would vouch for what lies there.
+    fs::remove(stamp_file(to, view));
+    remove_range_files(to, view);
+    int last = -1;
+    for (const auto& [frame, file] : pictures_of(from, view)) {
+        move_file(file, to.picture(view, frame));
+        last = std::max(last, frame);
+    }
+    remove_pictures_beyond(to, view, last);
+    move_file(stamp_file(from, view), stamp_file(to, view));
+}
+
+void remove_pictures_beyond(const RunFolder& folder, const std::string& view, int last) {
+    for (const auto& [frame, file] : pictures_of(folder, view)) {
+        if (frame > last) fs::remove(file);
+    }
 }
 
 bool keep_or_clear_range(const RunFolder& folder, const std::string& view, const std::string& stamp,

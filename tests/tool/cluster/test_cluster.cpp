@@ -1,4 +1,6 @@
 #include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
 
 #include "base/whole_file.hpp"
@@ -11,6 +13,7 @@
 
 using namespace unravel;
 using namespace unravel::tool;
+namespace fs = std::filesystem;
 
 TEST_CASE("indices are written as sbatch takes them", "[cluster]") {
     CHECK(index_ranges({}).empty());
@@ -77,6 +80,33 @@ TEST_CASE("a job script says what its options ask for, and no more", "[cluster]"
           "#SBATCH --output=/shared/output/a/slurm/accuracy_%a.log\n",
           "'/shared/my unravel' accuracy a.toml --point"})
         CHECK(full.find(present) != full.npos);
+}
+
+TEST_CASE("what collects comes after tasks that were killed and queued again", "[cluster]") {
+    const TemporaryFolder folder;
+    JobScript script{"run_collect", "", "run --collect", {}, false, true};
+    // Commands that say that they were called; squeue has a task of job 12 until the file `queued` is gone.
+    const auto command = [&](const char* name, const std::string& text) {
+        write_whole_file(folder / name, "#!/bin/sh\n" + text + "\n");
+        fs::permissions(folder / name, fs::perms::owner_all);
+    };
+    command("squeue", "[ \"$2\" = --jobs=12 ] && cat '" + (folder / "queued").string() + "' 2>/dev/null");
+    command("scontrol", "echo \"$@\" >> '" + (folder / "called").string() + "'");
+    command("tool", "echo tool \"$@\" >> '" + (folder / "called").string() + "'");
+    write_whole_file(folder / "collect.sh",
+                     job_script_text(script, folder / "tool", folder / "out", folder / ".", {}));
+    const auto run = [&](const std::string& argument) {
+        fs::remove(folder / "called");
+        const std::string line = "PATH='" + (folder / ".").string() + "':\"$PATH\" SLURM_JOB_ID=13 bash '" +
+                                 (folder / "collect.sh").string() + "' " + argument;
+        CHECK(std::system(line.c_str()) == 0);
+        return read_whole_text(folder / "called", 1 << 10);
+    };
+    write_whole_file(folder / "queued", "12_1 COMPLETING\n");
+    CHECK(run("12") == "requeue 13\n");
+    CHECK(run("") == "tool run --collect\n");  // by hand
+    fs::remove(folder / "queued");
+    CHECK(run("12") == "tool run --collect\n");
 }
 
 TEST_CASE("a missing piece is explained by what its task said last", "[cluster]") {
