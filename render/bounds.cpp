@@ -6,43 +6,17 @@
 
 namespace unravel::render {
 
-namespace {
-
-/// Half extents of a box around a solid in its own frame [m].
-Vec3f half_extents(const SolidMesh& solid) {
-    switch (solid.shape) {
-        case SolidShape::plane:
-            return Vec3f::Zero();
-        case SolidShape::sphere:
-            return Vec3f::Constant(solid.radius);
-        case SolidShape::box:
-            return 0.5f * solid.size;
-        case SolidShape::cylinder:
-            return {solid.radius, 0.5f * solid.height, solid.radius};
-        case SolidShape::capsule:
-            return {solid.radius, 0.5f * solid.height + solid.radius, solid.radius};
-        case SolidShape::mesh: {
-            Vec3f half = Vec3f::Zero();
-            for (const Vec3f& x : solid.positions) half = half.cwiseMax(x.cwiseAbs());
-            return half;
-        }
-    }
-    return Vec3f::Zero();
-}
-
-}  // namespace
-
 void visit_bounds(const DrawScene& scene, const DrawFrame& frame,
                   const std::function<void(const Vec3f&)>& visit) {
     for (const ClothMesh& mesh : scene.cloths)
         for (const std::uint32_t p : mesh.particle) visit(frame.positions[p]);
     for (std::size_t s = 0; s < scene.solids.size(); ++s) {
-        if (scene.solids[s].shape == SolidShape::plane) continue;
+        if (scene.solids[s].plane) continue;
         if (scene.solids[s].deforms) {
             for (const Vec3f& x : frame.solid_positions[s]) visit(frame.solid_poses[s] * x);
             continue;
         }
-        const Vec3f half = half_extents(scene.solids[s]);
+        const Vec3f& half = scene.solids[s].half_extents;
         for (int corner = 0; corner < 8; ++corner) {
             const Vec3f sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
             visit(frame.solid_poses[s] * Vec3f(half.cwiseProduct(sign)));

@@ -45,17 +45,23 @@ struct ClothMesh {
                                 ///< lowest row at v = 0, and repeats beyond
 };
 
-enum class SolidShape { plane, sphere, box, cylinder, capsule, mesh };
+/// A surface with its normals; triangles are counter-clockwise from outside.
+struct Tessellation {
+    std::vector<Vec3f> positions = {}, normals = {};  ///< (vertices) [m], unit
+    std::vector<std::uint32_t> indices = {};          ///< (triangles × 3)
+};
 
+/// What is drawn of a solid, in its own frame: an endless plane facing +y, a surface that keeps its shape, or
+/// a mesh whose normals follow from its triangles.
 struct SolidMesh {
-    SolidShape shape = SolidShape::sphere;
-    float radius = 0.3f, height = 1.0f, round = 0.0f;  ///< m; cylinders and capsules stand along y, capsules'
-                                                       ///< height is between the centres of their caps
-    Vec3f size{1, 1, 1};                               ///< box: full edge lengths [m]
-    std::vector<Vec3f> positions = {};                 ///< mesh: (vertices) in its own frame [m]
+    bool plane = false;
+    Tessellation fine = {}, coarse = {};  ///< a surface, for the eye and for shadows; coarse lies inside
+    Vec3f half_extents{0, 0, 0};          ///< of the box about it, but for what deforms [m]
+    std::vector<Vec3f> positions = {};    ///< mesh: (vertices) [m]
     std::vector<std::array<std::uint32_t, 3>> triangles = {};  ///< mesh: counter-clockwise from outside
     bool deforms = false;                                      ///< mesh: DrawFrame has its positions
     Rgb color{201, 183, 156};
+    bool is_mesh() const { return !triangles.empty(); }
 };
 
 struct CameraView {

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <map>
 
-#include "render/solid_shapes.hpp"
-
 namespace unravel::render {
 
 void Outlines::find_edges(Surface& surface) {
@@ -33,12 +31,12 @@ void Outlines::find_edges(Surface& surface) {
 Outlines::Surface Outlines::surface_of(const SolidMesh& solid, int index) {
     Surface surface;
     surface.solid = index;
-    if (solid.shape == SolidShape::mesh) {
+    if (solid.is_mesh()) {
         surface.triangles.assign(solid.triangles.begin(), solid.triangles.end());
         surface.positions = solid.positions;
         return surface;
     }
-    const Tessellation shape = tessellate(solid);
+    const Tessellation& shape = solid.fine;
     std::map<std::array<long, 3>, std::uint32_t> known;
     std::vector<std::uint32_t> corner;
     for (const Vec3f& x : shape.positions) {
@@ -66,8 +64,7 @@ Outlines::Outlines(const DrawScene& scene, bool encoded)
             surface.triangles.push_back({mesh.particle[a], mesh.particle[b], mesh.particle[c]});
     }
     for (std::size_t s = 0; s < scene.solids.size(); ++s)
-        if (scene.solids[s].shape != SolidShape::plane)
-            surfaces_.push_back(surface_of(scene.solids[s], static_cast<int>(s)));
+        if (!scene.solids[s].plane) surfaces_.push_back(surface_of(scene.solids[s], static_cast<int>(s)));
     std::size_t edges = 0, triangles = 0;
     for (Surface& surface : surfaces_) {
         find_edges(surface);

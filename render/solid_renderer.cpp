@@ -34,13 +34,19 @@ SolidRenderer::SolidRenderer(const DrawScene& scene, bool encoded)
       fading_(true, encoded) {
     for (std::size_t i = 0; i < scene.solids.size(); ++i) {
         const SolidMesh& solid = scene.solids[i];
-        if (solid.shape == SolidShape::plane) continue;
-        parts_.push_back({Mesh(tessellate(solid)), Mesh(tessellate(solid, 0.4f)), static_cast<int>(i), false,
-                          linear(solid.color)});
-        if (solid.deforms) parts_.back().creased = crease(solid.triangles, solid.positions);
+        if (solid.plane) continue;
+        const int index = static_cast<int>(i);
+        if (!solid.is_mesh()) {
+            parts_.push_back({Mesh(solid.fine), Mesh(solid.coarse), index, false, linear(solid.color)});
+            continue;
+        }
+        CreasedMesh creased = crease(solid.triangles, solid.positions);
+        const Tessellation shape = tessellate_mesh(creased, solid.positions);
+        parts_.push_back({Mesh(shape), Mesh(shape), index, false, linear(solid.color)});
+        if (solid.deforms) parts_.back().creased = std::move(creased);
     }
     for (std::size_t i = 0; i < scene.solids.size(); ++i)
-        if (scene.solids[i].shape == SolidShape::plane)
+        if (scene.solids[i].plane)
             parts_.push_back({Mesh(tessellate_ground(reach_)), Mesh({}), static_cast<int>(i), true,
                               linear(scene.solids[i].color)});
 }

@@ -30,87 +30,6 @@ void add_grid(Tessellation& mesh, int rows, int columns,
         }
 }
 
-/// A point of a profile turned around y: distance from the axis, height, and the normal's two parts.
-struct ProfilePoint {
-    float radius, y, normal_radial, normal_y;
-};
-
-/// Profile from top to bottom.
-Tessellation turn(const std::vector<ProfilePoint>& profile, int sectors) {
-    Tessellation mesh;
-    add_grid(mesh, static_cast<int>(profile.size()) - 1, sectors, [&](int r, int c, Vec3f& p, Vec3f& n) {
-        const ProfilePoint& at = profile[r];
-        const float angle = 2 * pi * c / sectors, x = std::sin(angle), z = std::cos(angle);
-        p = {at.radius * x, at.y, at.radius * z};
-        n = {at.normal_radial * x, at.normal_y, at.normal_radial * z};
-    });
-    return mesh;
-}
-
-/// Arc of the profile around (centre, y) from polar angle `from` to `to`, measured from +y.
-void add_arc(std::vector<ProfilePoint>& profile, float centre, float y, float radius, float from, float to,
-             int segments) {
-    for (int i = 0; i <= segments; ++i) {
-        const float angle = from + (to - from) * i / segments, s = std::sin(angle), c = std::cos(angle);
-        profile.push_back({centre + radius * s, y + radius * c, s, c});
-    }
-}
-
-Tessellation tessellate_cylinder(const SolidMesh& solid, int sectors) {
-    const float half = 0.5f * solid.height, round = std::min({solid.round, solid.radius, half});
-    std::vector<ProfilePoint> profile;
-    const float flat = solid.radius - round;
-    for (const float t : {0.f, 0.3f, 0.6f, 0.85f, 1.f}) profile.push_back({flat * t, half, 0, 1});
-    add_arc(profile, flat, half - round, round, 0, pi / 2, 6);
-    for (int i = 1; i < 16; ++i) profile.push_back({solid.radius, (half - round) * (1 - i / 8.f), 1, 0});
-    add_arc(profile, flat, round - half, round, pi / 2, pi, 6);
-    for (const float t : {1.f, 0.85f, 0.6f, 0.3f, 0.f}) profile.push_back({flat * t, -half, 0, -1});
-    return turn(profile, sectors);
-}
-
-Tessellation tessellate_capsule(const SolidMesh& solid, int sectors) {
-    const float half = 0.5f * solid.height;
-    std::vector<ProfilePoint> profile;
-    add_arc(profile, 0, half, solid.radius, 0, pi / 2, sectors / 4);
-    for (int i = 1; i < 16; ++i) profile.push_back({solid.radius, half * (1 - i / 8.f), 1, 0});
-    add_arc(profile, 0, -half, solid.radius, pi / 2, pi, sectors / 4);
-    return turn(profile, sectors);
-}
-
-Tessellation tessellate_box(const SolidMesh& solid, int straight) {
-    const Vec3f half = 0.5f * solid.size;
-    const float round = std::clamp(solid.round, 0.f, half.minCoeff());
-    // Along each axis of a face: an arc at either end and straight steps between, as signed offsets.
-    constexpr int arc = 4;
-    const int steps = 2 * arc + straight;
-    const auto along = [&](int i,
-                           float half_length) -> std::pair<float, float> {  // (inner point, tangent of tilt)
-        const float inner = half_length - round;
-        if (i < arc) return {-inner, -std::tan(pi / 4 * (arc - i) / arc)};
-        if (i > arc + straight) return {inner, std::tan(pi / 4 * (i - arc - straight) / arc)};
-        return {inner * (2.f * (i - arc) / straight - 1), 0.f};
-    };
-    Tessellation mesh;
-    for (int axis = 0; axis < 3; ++axis)
-        for (const float side : {-1.f, 1.f}) {
-            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-            add_grid(mesh, steps, steps, [&](int r, int c, Vec3f& p, Vec3f& n) {
-                // Swapping rows and columns on one side keeps triangles counter-clockwise from outside.
-                const auto [pu, nu] = along(side > 0 ? r : c, half[u]);
-                const auto [pv, nv] = along(side > 0 ? c : r, half[v]);
-                n[axis] = side;
-                n[u] = round > 0 ? nu : 0;
-                n[v] = round > 0 ? nv : 0;
-                n.normalize();
-                p[axis] = side * (half[axis] - round);
-                p[u] = pu;
-                p[v] = pv;
-                p += round * n;
-            });
-        }
-    return mesh;
-}
-
 }  // namespace
 
 CreasedMesh crease(std::span<const std::array<std::uint32_t, 3>> triangles,
@@ -176,28 +95,6 @@ Tessellation tessellate_mesh(const CreasedMesh& mesh, std::span<const Vec3f> pos
     }
     for (Vec3f& n : out.normals) n = n.norm() > 0 ? Vec3f(n.normalized()) : Vec3f(0, 1, 0);
     return out;
-}
-
-Tessellation tessellate(const SolidMesh& solid, float detail) {
-    const int sectors = static_cast<int>(72 * detail);
-    switch (solid.shape) {
-        case SolidShape::plane:
-            return {};
-        case SolidShape::sphere: {
-            std::vector<ProfilePoint> profile;
-            add_arc(profile, 0, 0, solid.radius, 0, pi, sectors / 2);
-            return turn(profile, sectors);
-        }
-        case SolidShape::box:
-            return tessellate_box(solid, static_cast<int>(12 * detail));
-        case SolidShape::cylinder:
-            return tessellate_cylinder(solid, sectors);
-        case SolidShape::capsule:
-            return tessellate_capsule(solid, sectors);
-        case SolidShape::mesh:
-            return tessellate_mesh(crease(solid.triangles, solid.positions), solid.positions);
-    }
-    return {};
 }
 
 Tessellation tessellate_ground(float reach) {

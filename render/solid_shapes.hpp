@@ -6,17 +6,6 @@
 
 namespace unravel::render {
 
-/// Triangles of a solid in its own frame; counter-clockwise from outside.
-struct Tessellation {
-    std::vector<Vec3f> positions, normals;  ///< (vertices) [m], unit
-    std::vector<std::uint32_t> indices;     ///< (triangles × 3)
-};
-
-/// Sphere, box (edges rounded by `round`), cylinder or capsule as SolidMesh describes them, fine enough that
-/// their outline looks round at 1080p. A plane gives nothing: it is drawn as ground.
-/// `detail` 1 is for the eye; less gives coarser, inscribed shapes.
-Tessellation tessellate(const SolidMesh& solid, float detail = 1);
-
 /// A mesh's vertices for drawing: one for each smooth patch around a vertex of the mesh. Patches end at edges
 /// that bend by more than 40 degrees, and where the surface does.
 struct CreasedMesh {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sim/mesh/mesh_solid.hpp"
+#include "sim/solids/shape.hpp"
 
 namespace unravel::sim {
 
@@ -77,7 +78,7 @@ SolidReach reach_of(const Solid& solid, const Pose& now, const Pose& next) {
     reach.now = now.translation();
     reach.next = next.translation();
     reach.normal = now.linear().col(1);
-    reach.radius = bounding_radius(solid);
+    reach.radius = law_of(solid.shape).reach(solid);
     reach.plane = solid.shape == Shape::plane && solid.motion.empty();
     reach.travel = (reach.next - reach.now).norm();
     // Frobenius' norm of the difference is 2√2 sin(θ/2): more than θ for turns below 2.2, and at most 2√2.

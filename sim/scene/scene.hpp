@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/scene/enums.hpp"
+
 namespace unravel::sim {
 
 using Vec3 = Eigen::Vector3d;
@@ -78,8 +80,6 @@ struct Keyframe {
 /// the last keyframe). Empty: does not move.
 using Motion = std::vector<Keyframe>;
 
-enum class PinTarget { corner, edge, particles, box, disc, group, within };
-
 /// A box in the world, at the start.
 struct WorldBox {
     Vec3 low{0, 0, 0}, high{0, 0, 0};  ///< m
@@ -98,14 +98,6 @@ struct Pin {
     std::optional<double> release;  ///< s; absent: never
     SourcePlace place;
 };
-
-enum class Wrap { open, tube };
-
-/// Which way is up in a mesh's file.
-enum class UpAxis { y, z };
-
-/// Which holes of a body are closed: those of up to a hundredth of its surface, or all.
-enum class MeshHoles { small, cap };
 
 /// A mesh as a scene names it, and how it is to be taken.
 struct MeshFile {
@@ -150,8 +142,6 @@ struct Cloth {
     SourcePlace place;
 };
 
-enum class Shape { plane, sphere, box, cylinder, capsule, mesh };
-
 /// How a mesh deforms: by the samples of a PC2 file, or of files numbered where the name has '#', or by an
 /// animation in the mesh's own file.
 struct MeshFrames {
@@ -188,36 +178,6 @@ struct Solid {
     std::string color;      ///< "#rrggbb"; empty: the look's default
     SourcePlace place;
 };
-
-/// `automatic` takes explicit substeps or adaptive IMEX, whichever is counted cheaper
-/// (sim/step/choose_integrator.hpp).
-enum class Integrator { explicit_, implicit, newton, imex, adaptive_imex, bdf2, adaptive_imex2, automatic };
-/// `automatic` chooses per component. `stencil_block` is the constrained block, and `multigrid` a cycle by
-/// lines, in single precision on the stencil of a grid; what lies on no grid gets the constrained block on
-/// rows. `aggregation` is a multigrid cycle on rows, on whatever mesh they are.
-enum class Preconditioner {
-    none,
-    diagonal,
-    block,
-    constrained_block,
-    ssor,
-    ic0,
-    automatic,
-    stencil_block,
-    multigrid,
-    aggregation
-};
-
-/// How bend springs are treated: as the integrator has it (implicitly by implicit and newton), or explicitly
-/// by all.
-enum class BendTreatment { scheme, explicit_ };
-
-/// When a spring that is slack at the start of a step begins to act within it: not before the next step
-/// (start); where the last step's motion carried on would make it taut (predicted); where the solution does,
-/// in a second solve (resolve); or where it is taut at x + h v, at which implicit springs are then linearised
-/// (ahead): the first iteration of Newton's method for backward Euler, begun where the step would end without
-/// forces.
-enum class Activation { start, predicted, resolve, ahead };
 
 /// Step size chosen while running; a rejected step is undone exactly.
 struct AdaptiveStep {
@@ -285,8 +245,6 @@ struct Camera {
     std::vector<Key> keyframes;
 };
 
-enum class Weave { plain, twill, checks, stripes, solid };
-
 struct ClothLook {
     Weave weave = Weave::checks;
     std::string front = "#b03a48", front_second = "#f2e6d8";  ///< the two yarn colours of the front
@@ -294,9 +252,6 @@ struct ClothLook {
     double scale = 0.05;  ///< m, period of checks or stripes
     std::string texture;  ///< PNG file beside the scene; empty: the weave
 };
-
-/// What the colours of the component view tell.
-enum class Show { components, splitting, strain, velocity, contact };
 
 struct Look {
     std::vector<ClothLook> cloth;  ///< one per cloth; the last serves the rest

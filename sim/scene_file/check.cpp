@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/scene/limits.hpp"
+#include "sim/solids/shape.hpp"
 
 namespace unravel::sim {
 
@@ -102,8 +103,7 @@ void check_solids(const Checking& check) {
                                      solid.friction.static_),
                          "what slides is never held harder than what rests");
         if (!check.places.sound(path) || solid.round == 0) continue;
-        const double thinnest =
-            solid.shape == Shape::box ? solid.size.minCoeff() : std::min(2 * solid.radius, solid.height);
+        const double thinnest = 2 * law_of(solid.shape).half_extents(solid).minCoeff();
         if (solid.round > thinnest / 2)
             check.report(path + ".round", fmt::format("edges rounded by {} m", solid.round),
                          fmt::format("at most half of its thinnest, {} m", thinnest / 2));

@@ -1,4 +1,7 @@
+#include <string>
+
 #include "sim/scene_file/describe.hpp"
+#include "sim/solids/shape.hpp"
 
 namespace unravel::sim {
 
@@ -11,6 +14,19 @@ void describe(Fields& f, Friction& friction) {
     f.number({"static", "coefficient while held", true}, friction.static_, friction_bounds);
     f.number({"kinetic", "coefficient while sliding; default: 0.8 of static"}, friction.kinetic,
              friction_bounds);
+}
+
+// "of spheres, boxes": the shapes that have this size.
+std::string of_shapes(bool ShapeSizes::*size, std::string_view what) {
+    std::string text(what);
+    const char* before = " of ";
+    for (std::size_t s = 0; s < std::size(all_shapes); ++s) {
+        if (!(all_shapes[s]->sizes.*size)) continue;
+        text += before;
+        text += shape_words[s];
+        before = ", ";
+    }
+    return text;
 }
 
 }  // namespace
@@ -48,16 +64,16 @@ void describe(Fields& f, Solid& solid) {
     if (f.reading() && mesh && !f.says("mesh"))
         f.problem("shape", "a mesh without a file", "write mesh = \"body.obj\"");
     describe(f, solid.frames, mesh || (!f.reading() && !f.writing()));
-    const bool curved = shape == Shape::sphere || shape == Shape::cylinder || shape == Shape::capsule;
-    f.number({"radius", "of spheres, cylinders and capsules [m]", false, curved}, solid.radius,
-             length_bounds);
-    f.number({"height", "of cylinders (whole) and capsules (between the centres of the caps) [m]", false,
-              shape == Shape::cylinder || shape == Shape::capsule},
-             solid.height, length_bounds);
-    f.vector({"size", "edge lengths of a box [m]", false, shape == Shape::box}, solid.size, length_bounds);
-    f.number({"round", "radius of the rounded edges of boxes and cylinders [m]", false,
-              shape == Shape::box || shape == Shape::cylinder},
-             solid.round, {0, 1000, false, "m"});
+    const ShapeSizes has = law_of(shape).sizes;
+    static const std::string radius = of_shapes(&ShapeSizes::radius, "m,"),
+                             height = of_shapes(&ShapeSizes::height, "m,") +
+                                      "; a capsule's is between the centres of its caps",
+                             size = of_shapes(&ShapeSizes::size, "m, edge lengths"),
+                             round = of_shapes(&ShapeSizes::round, "m, radius of the rounded edges");
+    f.number({"radius", radius, false, has.radius}, solid.radius, length_bounds);
+    f.number({"height", height, false, has.height}, solid.height, length_bounds);
+    f.vector({"size", size, false, has.size}, solid.size, length_bounds);
+    f.number({"round", round, false, has.round}, solid.round, {0, 1000, false, "m"});
     f.vector({"center", "m"}, solid.center, position_bounds);
     f.vector({"rotation", "degrees about x, then y, then z"}, solid.rotation, rotation_bounds);
     f.list({"motion", "keyframes: displacement from where it stands, and rotation about the pivot"},

@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/scene/enums.hpp"
 #include "sim/scene/scene.hpp"
-#include "sim/scene/words.hpp"
 
 namespace unravel::sim {
 

@@ -9,8 +9,8 @@
 #include <set>
 #include <system_error>
 
+#include "sim/scene/enums.hpp"
 #include "sim/scene/limits.hpp"
-#include "sim/scene/words.hpp"
 #include "sim/scene_file/check.hpp"
 #include "sim/scene_file/describe.hpp"
 #include "sim/scene_file/override.hpp"

@@ -40,7 +40,4 @@ struct SurfacePoint {
 SurfacePoint nearest_surface(const Solid& solid, const DeformedSolid* deformed, bool at_end,
                              const Vec3& local, double cutoff);
 
-/// Radius of the smallest ball about the solid's centre that holds it [m]; infinite for a plane.
-double bounding_radius(const Solid& solid);
-
 }  // namespace unravel::sim

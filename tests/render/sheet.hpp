@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "render/draw_scene.hpp"
+#include "tests/render/ball.hpp"
 
 namespace unravel::testing {
 
@@ -49,7 +50,7 @@ struct Sheet {
             frame.positions.push_back({r * std::cos(angle), std::max(y, 0.005f), r * std::sin(angle)});
         }
         scene.cloths.push_back(std::move(mesh));
-        scene.solids.push_back({.shape = SolidShape::sphere, .radius = radius});
+        scene.solids.push_back(ball(radius));
         scene.bounds_low = {-0.6f, 0, -0.6f};
         scene.bounds_high = {0.6f, 0.75f, 0.6f};
         Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();

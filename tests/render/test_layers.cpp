@@ -3,6 +3,7 @@
 
 #include "render/color.hpp"
 #include "render/renderer.hpp"
+#include "tests/render/ball.hpp"
 #include "tests/render/gl_test.hpp"
 #include "tests/render/pictures.hpp"
 #include "tests/render/sheet.hpp"
@@ -58,7 +59,7 @@ TEST_CASE("GL_exposures_are_averaged_in_light") {
     CHECK(worst <= 1);
     // A white ball that is there for one of two exposures leaves half its light.
     DrawScene scene = empty_scene({0, 0, 0});
-    scene.solids.push_back({.shape = SolidShape::sphere, .radius = 0.5f, .color = {255, 255, 255}});
+    scene.solids.push_back(testing::ball(0.5f, {255, 255, 255}));
     std::vector<DrawFrame> frames(2);
     for (DrawFrame& frame : frames) {
         frame.solid_poses.push_back(Eigen::Isometry3f::Identity());
@@ -128,7 +129,7 @@ TEST_CASE("GL_what_reaches_below_the_ground_is_hidden_by_it") {
     DrawScene scene = empty_scene({216, 222, 230});
     scene.components_background = {27, 30, 36};
     scene.show_ground = true;
-    scene.solids.push_back({.shape = SolidShape::sphere, .radius = 0.5f, .color = {220, 20, 20}});
+    scene.solids.push_back(testing::ball(0.5f, {220, 20, 20}));
     DrawFrame frame;
     frame.camera = {.position = {0, 1, 5}, .target = {0, 0.5f, 0}, .up = {0, 1, 0}, .fov = 40};
     for (const DrawStyle style : {DrawStyle::textured, DrawStyle::components}) {

@@ -253,7 +253,7 @@ TEST_CASE("GL_slow_gradients_show_no_bands") {
 TEST_CASE("GL_flat_faces_of_a_mesh_are_flat_and_round_ones_round") {
     const auto context = testing::open_renderer();
     if (!context) return;
-    SolidMesh cube{.shape = SolidShape::mesh, .color = {180, 180, 180}};
+    SolidMesh cube{.half_extents = Vec3f::Constant(0.4f), .color = {180, 180, 180}};
     for (int k = 0; k < 8; ++k)
         cube.positions.push_back(0.4f * Vec3f(k & 1 ? 1.f : -1.f, k & 2 ? 1.f : -1.f, k & 4 ? 1.f : -1.f));
     cube.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},

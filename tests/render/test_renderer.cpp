@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/allocations.hpp"
+#include "tests/render/ball.hpp"
 #include "tests/render/gl_test.hpp"
 #include "tests/render/pictures.hpp"
 #include "tests/render/sheet.hpp"
@@ -52,7 +53,7 @@ TEST_CASE("GL_the_top_row_comes_first") {
     const auto context = testing::open_renderer();
     if (!context) return;
     DrawScene scene = empty_scene({0, 0, 0});
-    scene.solids.push_back({.shape = SolidShape::sphere, .radius = 0.2f, .color = {255, 255, 255}});
+    scene.solids.push_back(testing::ball(0.2f, {255, 255, 255}));
     DrawFrame frame;
     frame.solid_poses.push_back(
         Eigen::Isometry3f(Eigen::Translation3f(0.4f, 0.8f, 0)));  // up and to the right

@@ -9,8 +9,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "bench/cholmod_solve.hpp"
 #include "tool/base/program.hpp"
+#include "tool/bench/cholmod_solve.hpp"
 
 namespace unravel::tool {
 
@@ -26,7 +26,7 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// The library that holds bench/cholmod_solve.cpp, opened when it is first asked for, so
+// The library that holds tool/bench/cholmod_solve.cpp, opened when it is first asked for, so
 // that nobody else pays for CHOLMOD and its BLAS. Stays open.
 decltype(&unravel_cholmod_solve) cholmod() {
     static const auto found = []() -> decltype(&unravel_cholmod_solve) {

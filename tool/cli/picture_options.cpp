@@ -6,7 +6,7 @@
 #include <charconv>
 #include <string_view>
 
-#include "sim/scene/words.hpp"
+#include "sim/scene/enums.hpp"
 #include "tool/cli/common_options.hpp"
 
 namespace unravel::tool {

@@ -1,9 +1,9 @@
 #include <algorithm>
 
 #include "base/whole_file.hpp"
-#include "render/solid_shapes.hpp"
 #include "sim/mesh/mesh_solid.hpp"
 #include "sim/solids/motion.hpp"
+#include "sim/solids/shape.hpp"
 #include "tool/export/export.hpp"
 #include "tool/picture/view.hpp"
 
@@ -13,12 +13,6 @@ namespace {
 
 constexpr std::size_t largest_picture = std::size_t{1} << 30;
 constexpr float plane_side = 10;  // m, of which a plane shows
-
-SolidShape drawn_shape(Shape shape) {
-    constexpr SolidShape shapes[] = {SolidShape::plane,    SolidShape::sphere,  SolidShape::box,
-                                     SolidShape::cylinder, SolidShape::capsule, SolidShape::mesh};
-    return shapes[static_cast<std::size_t>(shape)];
-}
 
 void give_shape(const Solid& solid, ExportSolid& out) {
     if (solid.shape == Shape::plane) {
@@ -36,13 +30,7 @@ void give_shape(const Solid& solid, ExportSolid& out) {
             };
         return;
     }
-    SolidMesh mesh;
-    mesh.shape = drawn_shape(solid.shape);
-    mesh.radius = static_cast<float>(solid.radius);
-    mesh.height = static_cast<float>(solid.height);
-    mesh.round = static_cast<float>(solid.round);
-    mesh.size = solid.size.cast<float>();
-    const Tessellation shape = tessellate(mesh);
+    const ShapeSurface shape = law_of(solid.shape).surface(solid, 1);
     out.positions = shape.positions;
     for (std::size_t k = 0; k + 2 < shape.indices.size(); k += 3)
         out.triangles.push_back({shape.indices[k], shape.indices[k + 1], shape.indices[k + 2]});

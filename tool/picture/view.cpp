@@ -9,7 +9,9 @@
 #include "render/png.hpp"
 #include "sim/mesh/mesh_solid.hpp"
 #include "sim/solids/motion.hpp"
+#include "sim/solids/shape.hpp"
 #include "tool/picture/display_mesh.hpp"
+#include "tool/picture/drawn_solid.hpp"
 #include "tool/picture/subdivision.hpp"
 #include "tool/picture/wire_colors.hpp"
 
@@ -33,35 +35,10 @@ WeavePattern pattern_of(Weave weave) {
     return WeavePattern::plain;
 }
 
-SolidShape shape_of(Shape shape) {
-    switch (shape) {
-        case Shape::plane:
-            return SolidShape::plane;
-        case Shape::sphere:
-            return SolidShape::sphere;
-        case Shape::box:
-            return SolidShape::box;
-        case Shape::cylinder:
-            return SolidShape::cylinder;
-        case Shape::capsule:
-            return SolidShape::capsule;
-        case Shape::mesh:
-            return SolidShape::mesh;
-    }
-    return SolidShape::sphere;
-}
-
 // A plane that faces straight up is drawn as the ground.
 bool is_ground(const Solid& solid) {
     return solid.shape == Shape::plane && solid.motion.empty() &&
            (rotation_from_degrees(solid.rotation) * Vec3::UnitY()).y() > 0.9999;
-}
-
-// Radius about its centre within which a solid is.
-double reach_of(const Solid& solid) {
-    if (solid.shape == Shape::mesh) return solid.geometry->reach;
-    if (solid.shape == Shape::box) return 0.5 * solid.size.norm();
-    return solid.shape == Shape::sphere ? solid.radius : solid.radius + 0.5 * solid.height;
 }
 
 float ground_height(const Scene& scene, const Placement& placement) {
@@ -72,7 +49,7 @@ float ground_height(const Scene& scene, const Placement& placement) {
     }
     if (std::isfinite(lowest)) return static_cast<float>(lowest);
     for (const Solid& solid : scene.solids) {
-        const double reach = reach_of(solid);
+        const double reach = law_of(solid.shape).reach(solid);
         if (solid.shape != Shape::plane) lowest = std::min(lowest, solid.center.y() - reach);
     }
     // A hanging cloth may swing down to its own size below its highest point.
@@ -97,7 +74,7 @@ void set_bounds(const Scene& scene, const ClothModel& model, const Placement& pl
     };
     for (const Solid& solid : scene.solids) {
         if (solid.shape == Shape::plane) continue;
-        const Vec3f r = Vec3f::Constant(static_cast<float>(reach_of(solid)));
+        const Vec3f r = Vec3f::Constant(static_cast<float>(law_of(solid.shape).reach(solid)));
         along(solid.motion, [&](double t) {
             const Vec3f c = solid_pose(solid, t).translation().cast<float>();
             include(c - r);
@@ -181,19 +158,8 @@ DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Pla
     out.spacing = spacing_of(model);
     for (const Solid& solid : scene.solids) {
         if (is_ground(solid)) continue;
-        SolidMesh mesh;
-        mesh.shape = shape_of(solid.shape);
-        mesh.radius = static_cast<float>(solid.radius);
-        mesh.height = static_cast<float>(solid.height);
-        mesh.round = static_cast<float>(solid.round);
-        mesh.size = solid.size.cast<float>();
-        if (solid.geometry) {
-            mesh.triangles = solid.geometry->triangles;
-            mesh.deforms = solid.geometry->deforms();
-            for (const Vec3& x : solid.geometry->rest) mesh.positions.push_back(x.cast<float>());
-        }
+        SolidMesh& mesh = out.solids.emplace_back(drawn_solid(solid));
         mesh.color = parse_color(solid.color.empty() ? scene.look.solid : solid.color);
-        out.solids.push_back(mesh);
     }
     out.background = parse_color(scene.look.background);
     out.ground = parse_color(scene.look.ground);

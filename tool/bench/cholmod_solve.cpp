@@ -1,4 +1,4 @@
-#include "bench/cholmod_solve.hpp"
+#include "tool/bench/cholmod_solve.hpp"
 
 #include <cholmod.h>
 
