@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/forces/stencil.hpp"
 #include "sim/scene/math.hpp"
 #include "sim/scene/scene.hpp"
 
@@ -33,11 +34,29 @@ Vec3 wind_velocity(const Wind& wind, double t);
 /// Air resistance and lift per cell after Eberhardt, Weber & Straßer 1996: with r = w − v the wind relative
 /// to the cell, n its unit normal and A its area,
 ///   F = ½ ρ A (C_d |r·n| (r·n) n + C_l |r| (r − (r·n) n)),
-/// a quarter (of a triangle: a third) to each corner. The air can bring a cell to its own speed within a
-/// step, never beyond.
+/// a quarter (of a triangle: a third) to each corner.
+///   h  s, of a step that takes the force for constant: it is at most what brings a cell to the air's speed
+///      within it; 0: of one that does not (StiffAir)
 ///   mass, x, v  (particles);  force  (cells) on the whole cell [N]
 void air_forces(const AirCells& air, const Wind& wind, double t, double h, std::span<const double> mass,
                 std::span<const Vec3> x, std::span<const Vec3> v, std::span<Vec3> force);
+
+/// Cells that the air would bring to more than half of its own speed within a step, if its force stayed what
+/// it is where the step begins: light cloth, strong wind. Their force is linear in the velocity at the step's
+/// end, with the coefficients of its beginning,
+///   F = ½ ρ A (C_d |r·n| (r'·n) n + C_l |r| (r' − (r'·n) n)),
+/// so that it brings them to the air's speed and never beyond, however large the step: what is held has the
+/// whole force.
+struct StiffAir {
+    std::vector<Stencil> cells;  ///< each one's mean velocity, damped by the two coefficients
+    std::vector<Vec3> start;     ///< (stiff cells) that velocity where the step began [m/s]
+    std::vector<Vec3> answer;    ///< (stiff cells) what has been added to the force by its change [N]
+};
+/// Finds them for a step of h seconds from (x, v), at time t.
+void find_stiff_air(const AirCells& air, const Wind& wind, double t, double h, std::span<const double> mass,
+                    std::span<const Vec3> x, std::span<const Vec3> v, StiffAir& out);
+/// Fills in their answer at velocities v (particles) [m/s].
+void answer_stiff_air(std::span<const Vec3> v, StiffAir& stiff);
 
 /// Adds each particle's share of its cells' forces, (cells) [N], to `force`, (particles).
 void add_air(const AirCells& air, std::span<const Vec3> of_cell, std::span<Vec3> force);

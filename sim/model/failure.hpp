@@ -12,7 +12,7 @@ namespace unravel::sim {
 enum class Criterion {
     not_finite,  ///< a position, velocity or energy is no number any more
     strain,    ///< a stretch spring is longer than any cloth gets: the run has exploded or the cloth is torn
-    energy,    ///< mechanical energy grew although nothing puts any in
+    energy,    ///< mechanical energy grew by more than anything puts in
     unsolved,  ///< conjugate gradients ended far from the solution
 };
 

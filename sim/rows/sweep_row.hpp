@@ -54,7 +54,7 @@ void bend_row(const RowState& a, const RowState& b, double rest, const double* a
 struct RowWind {
     Vec3 velocity{0, 0, 0};
     double density = 0, drag = 0, lift = 0;
-    double h = 0;  ///< s
+    double h = 0;  ///< s, as in air_forces()
 };
 
 /// Adds the air's forces on `count` cells between rows a and b, a quarter to each corner, to fa and fb [N].

@@ -39,7 +39,7 @@ StepReport adaptive_step(Simulation& simulation, const AdaptiveStep& settings, i
         const double h = static_cast<double>(length) / parts / rate;
         const bool smallest = state.halvings >= deepest;
         const std::uint8_t halvings = state.halvings;
-        const double energy = simulation.guard.total;
+        const Guard guard = simulation.guard;
         double over = 0;
         StepReport report;
         try {
@@ -53,7 +53,7 @@ StepReport adaptive_step(Simulation& simulation, const AdaptiveStep& settings, i
         }
         if (over > 1 && !smallest) {
             std::swap(state, simulation.ws.before);
-            simulation.guard.total = energy;
+            simulation.guard = guard;
             state.halvings = static_cast<std::uint8_t>(halvings + 1);
             continue;
         }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/mesh/mesh_solid.hpp"
+#include "sim/step/energy_input.hpp"
 #include "sim/step/trace.hpp"
 
 namespace unravel::sim {
@@ -127,8 +127,8 @@ struct Judgement {
         failure.particles = worst_particles(
             model.size(), 0.0, [&](std::uint32_t p) { return model.mass[p] * after.v[p].squaredNorm(); });
         stop(Criterion::energy,
-             fmt::format("the energy of motion would grow to {:.3g} J (at most {:.3g} J) though nothing puts "
-                         "any in; {}",
+             fmt::format("the energy of motion would grow to {:.3g} J (at most {:.3g} J), by more than "
+                         "anything puts in; {}",
                          failure.value, limit,
                          failure.particles.empty()
                              ? std::string("it is lifted")
@@ -162,14 +162,6 @@ const char* criterion_name(Criterion criterion) {
     return names[static_cast<int>(criterion)];
 }
 
-bool takes_energy(const ClothModel& model) {
-    const auto moves = [](const auto& thing) { return !thing.motion.empty(); };
-    const auto deforms = [](const Solid& solid) { return solid.geometry && solid.geometry->deforms(); };
-    return forces_feed(model) || std::any_of(model.pins.begin(), model.pins.end(), moves) ||
-           std::any_of(model.solids.begin(), model.solids.end(), moves) ||
-           std::any_of(model.solids.begin(), model.solids.end(), deforms);
-}
-
 namespace {
 
 // What springs and motion may hold because positions end at their last bits [J].
@@ -191,7 +183,6 @@ Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
     prepare_terms(model, h, forces);
     measure(model, forces, start, scratch, report);
     guard.strain += std::max(report.max_strain, 0.0);
-    if (takes_energy(model)) return guard;
     double weight = 0, size = 0;
     for (const double m : model.mass) weight += m * model.gravity.norm();
     for (const ClothPatch& patch : model.cloths) size = std::max({size, patch.size[0], patch.size[1]});
@@ -200,7 +191,7 @@ Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
     const double of_rounding = energy_of_rounding(model, start, h);
     guard.energy = height + 2.0 * (spent + of_rounding);
     guard.total = report.kinetic + report.potential;
-    if (!forces_hide_energy(model)) guard.rounding = rounding_share * spent + of_rounding;
+    guard.rounding = rounding_share * spent + of_rounding;
     return guard;
 }
 
@@ -239,9 +230,18 @@ StepReport guarded_step(const ClothModel& model, const StepOptions& options, dou
                         StepWorkspace& ws, Guard& guard) {
     StepReport report = step(model, options, h, state, ws);
     if (!options.measure) return report;
-    const bool grew = total_energy(report) > guard.total + guard.rounding;
-    if (grew && ws.linear.coupled && std::isfinite(total_energy(report)))
-        report = take_again(model, options, h, guard.total, report, state, ws);
+    const auto grows_beyond = [&](double energy) { return total_energy(report) > energy + guard.rounding; };
+    double input = 0;
+    if (grows_beyond(guard.total) && std::isfinite(total_energy(report))) {
+        input = energy_input(model, state, report, ws);
+        double allowed = guard.total + input;
+        if (ws.linear.coupled && grows_beyond(allowed)) {
+            allowed += energy_swing(model, state, ws);
+            if (grows_beyond(allowed)) report = take_again(model, options, h, allowed, report, state, ws);
+        }
+        // What is not counted has put in what is there.
+        input = std::min(input, std::max(0.0, total_energy(report) - guard.total));
+    }
     Judgement judgement{model, options, state, h, {}};
     judgement.failure.step = report.step;
     judgement.failure.t = ws.before.t;
@@ -249,13 +249,14 @@ StepReport guarded_step(const ClothModel& model, const StepOptions& options, dou
     try {
         judgement.judge_finite(report);
         judgement.judge_strain(report, guard.strain);
-        judgement.judge_energy(report, guard.energy);
+        judgement.judge_energy(report, guard.energy + input);
         judgement.judge_solution(report, trace_of(model, ws), guard.residual);
     } catch (const SimulationError&) {
         std::swap(state, ws.before);
         throw;
     }
     guard.total = total_energy(report);
+    guard.energy += input;
     return report;
 }
 

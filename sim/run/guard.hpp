@@ -10,10 +10,10 @@ namespace unravel::sim {
 /// numbers that mean nothing. All are far beyond what a sound run reaches.
 struct Guard {
     double strain = 10;          ///< of stretch springs, (l − L)/L
-    double energy = infinite;    ///< J, of motion and height; infinite where the scene puts energy in
+    double energy = infinite;    ///< J, of motion and height; grows by what is put in
     double residual = 0.1;       ///< relative, of a component that CG did not solve to its tolerance
     double total = infinite;     ///< J, motion, height and springs after the last step
-    double rounding = infinite;  ///< J, what `total` may grow by in a step before it is taken again
+    double rounding = infinite;  ///< J, what `total` may grow by in a step beyond what is put in
 
     static constexpr double infinite = std::numeric_limits<double>::infinity();
 };
@@ -25,17 +25,14 @@ struct Guard {
 /// bits may hold is added. `h` [s] is the step that the springs' energy is measured for.
 Guard make_guard(const ClothModel& model, const ClothState& start, double h);
 
-/// True where a scene puts energy in while it runs: moving pins or solids, or a force that does.
-bool takes_energy(const ClothModel& model);
-
 /// step(), taken back where its outcome breaks the guard. On SimulationError the state is what it was before.
 ///
 /// One linearisation sees neither a spring that goes taut within the step nor one that turns: both are longer
 /// at its end than the linear model has them, and energy has come from nowhere. A step after which there is
-/// more of it than before, though nothing puts any in, is therefore taken again, linearised until its end is
-/// met (Eq. 4): the springs' energy is convex in x, so that backward Euler then only loses. The report counts
-/// both attempts' work, and the first as rejected. Not where a
-/// force holds energy that is not measured, as the temporary springs of self-collision do.
+/// more of it than before, than what pins, moving solids, wind and temporary springs put in and than what
+/// swings where springs are explicit (sim/step/energy_input.hpp), is therefore taken again, linearised until
+/// its end is met (Eq. 4): the springs' energy is convex in x, so that backward Euler then only loses. The
+/// report counts both attempts' work, and the first as rejected.
 StepReport guarded_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                         StepWorkspace& ws, Guard& guard);
 

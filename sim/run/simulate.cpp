@@ -30,6 +30,9 @@ void restore(Simulation& simulation, const FrameRecord& record) {
     simulation.state = record.state;
     simulation.frame = record.frame;
     if (record.reports.empty()) return;
+    // What has been put in so far is in the state.
+    const double h = 1.0 / (simulation.fps * simulation.steps_per_frame);
+    simulation.guard.energy = make_guard(simulation.model, simulation.state, h).energy;
     simulation.guard.total = record.reports.back().kinetic + record.reports.back().potential;
 }
 

@@ -135,14 +135,18 @@ ForcePlan plan_forces(const ClothModel& model, const StepOptions& options, doubl
     const Scheme& scheme = scheme_of(options.integrator);
     ForcePlan plan;
     plan.settings = {h, scheme.splitting(options.threshold), options.activation_band,
-                     scheme.implicit_bend && options.bend == BendTreatment::scheme};
+                     scheme.implicit_bend && options.bend == BendTreatment::scheme, false};
+    const Splitting& splitting = plan.settings.splitting;
+    plan.settings.all_explicit =
+        splitting.stretch_threshold >= always_explicit && splitting.shear_threshold >= always_explicit;
     plan.because = why_general(model, options, looks_ahead);
     plan.by_rows = plan.because.empty();
     if (plan.by_rows) plan.because = "every cloth is a grid";
     each_term(model, [&](const ForceTerm& term) {
         const bool implicit = term.may_be_implicit && term.may_be_implicit(plan.settings);
         const bool has_rows = term.part_of_rows || (term.rows && (!implicit || term.rows->splits));
-        plan.terms.push_back({&term, plan.by_rows && has_rows, implicit,
+        const bool stiffens = term.stiffen && !plan.settings.all_explicit;
+        plan.terms.push_back({&term, plan.by_rows && has_rows, implicit, stiffens,
                               !plan.by_rows ? plan.because
                               : has_rows    ? "has a version along rows"
                               : term.rows   ? "is implicit, which it is not along rows"

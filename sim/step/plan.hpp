@@ -39,6 +39,7 @@ struct ForcePlan {
         const ForceTerm* term;
         bool by_rows;   ///< evaluated along rows; otherwise the general path
         bool implicit;  ///< its springs may be: they are evaluated with every linearisation
+        bool stiffens;  ///< it pushes, and in places answers within the step (ForceTerm::stiffen)
         std::string because;
     };
     std::vector<Term> terms;  ///< those that act

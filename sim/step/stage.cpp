@@ -30,7 +30,8 @@ void add_forces(const ClothModel& model, StepWorkspace& ws) {
         forces.sum.assign(model.size(), Vec3::Zero());
     }
     for (const ForcePlan::Term& planned : plan.terms) {
-        if (planned.term->add && !planned.by_rows) planned.term->add(model, forces.memory, forces.sum);
+        const bool added = planned.stiffens || !planned.by_rows;
+        if (planned.term->add && added) planned.term->add(model, forces.memory, forces.sum);
     }
     const Stage& stage = ws.stage;
     const bool rubbed = !ws.contact.friction.empty();
@@ -142,7 +143,8 @@ StepCouplings couplings_of(const ClothModel& model, const StepWorkspace& ws) {
     StepCouplings couplings;
     const ForcesAt at = forces_at(ws);
     for (const ForcePlan::Term& planned : ws.plan.forces.terms) {
-        if (planned.implicit) planned.term->couple(model, at, ws.forces.memory, couplings);
+        if (planned.implicit || planned.stiffens)
+            planned.term->couple(model, at, ws.forces.memory, couplings);
     }
     return couplings;
 }
@@ -181,6 +183,7 @@ void begin_forces(const ClothModel& model, const StepOptions& options, double t,
         } else {
             term.evaluate(model, at, forces.memory);
         }
+        if (planned.stiffens) term.stiffen(model, at, forces.memory);
         timer.lap(report.times.*term.time);
     }
 }
@@ -192,7 +195,7 @@ void linearise(const ClothModel& model, const StepOptions& options, StageTimer& 
     place_linearisation(model, options, ws);
     timer.lap(report.times.forces);
     for (const ForcePlan::Term& planned : ws.plan.forces.terms) {
-        if (!planned.implicit || planned.by_rows) continue;
+        if (!planned.stiffens && (!planned.implicit || planned.by_rows)) continue;
         planned.term->evaluate(model, forces_at(ws), ws.forces.memory);
         timer.lap(report.times.*planned.term->time);
     }

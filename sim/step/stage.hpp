@@ -45,6 +45,9 @@ void solve_again_where_taut(const ClothModel& model, const StepOptions& options,
 void iterate(const ClothModel& model, const StepOptions& options, StageTimer& timer, StepWorkspace& ws,
              StepReport& report);
 
+/// A Δv − b of every constraint, the impulse that holds it: in the contact stage, as last solved.
+void find_reactions(const ClothModel& model, StepWorkspace& ws);
+
 /// What a step of h seconds from `state` makes, but for what it computes: x, v, dv and contacts.
 void begin_next(const ClothState& state, double h, ClothState& next);
 

@@ -41,7 +41,20 @@ void count_springs(const StepCouplings& couplings, StepReport& report) {
     }
 }
 
-// A Δv − b of every constraint: what holds it.
+// What a multistep scheme looks back on. Contact makes velocities jump: a touching particle looks back on a
+// past in which it has always moved as it does now.
+void remember(double h, const ClothState& state, const StepWorkspace& ws, ClothState& next) {
+    next.x_previous = state.x;
+    next.v_previous = state.v;
+    for (const Touch& touch : ws.contact.touches) {
+        const std::uint32_t p = touch.contact.particle;
+        next.v_previous[p] = next.v[p];
+        next.x_previous[p] = next.x[p] - h * next.v[p];
+    }
+}
+
+}  // namespace
+
 void find_reactions(const ClothModel& model, StepWorkspace& ws) {
     const std::span<const Constraint> all = ws.constraints.all();
     const LinearStage& linear = ws.linear;
@@ -56,20 +69,6 @@ void find_reactions(const ClothModel& model, StepWorkspace& ws) {
         ws.contact.reaction[k] = row_times(linear.system, row, linear.solve.x) - linear.system.b[row];
     });
 }
-
-// What a multistep scheme looks back on. Contact makes velocities jump: a touching particle looks back on a
-// past in which it has always moved as it does now.
-void remember(double h, const ClothState& state, const StepWorkspace& ws, ClothState& next) {
-    next.x_previous = state.x;
-    next.v_previous = state.v;
-    for (const Touch& touch : ws.contact.touches) {
-        const std::uint32_t p = touch.contact.particle;
-        next.v_previous[p] = next.v[p];
-        next.x_previous[p] = next.x[p] - h * next.v[p];
-    }
-}
-
-}  // namespace
 
 void require_finite(std::span<const Vec3> v, const ClothState& state, double h) {
     for (std::uint32_t p = 0; p < v.size(); ++p) {

@@ -179,7 +179,7 @@ void RowForces::begin() {
 }
 
 void RowForces::push(const ClothModel& model, const RowVersion& term, double t) {
-    const RowWind wind = row_wind(model, t, memory_->settings.h);
+    const RowWind wind = row_wind(model, t, memory_->settings.all_explicit ? memory_->settings.h : 0.0);
     for (RowCloth& cloth : memory_->cloths) {
         if (term.present && !term.present(cloth.tables)) continue;
         cloth.pushed.resize(cloth.rows() * 3 * cloth.stride);

@@ -54,7 +54,7 @@ private:
     std::unique_ptr<RowForcesMemory> memory_;
 };
 
-/// The wind along rows, at time t, for steps of h seconds.
+/// The wind along rows, at time t, for steps of h seconds that take its force for constant; 0: that don't.
 RowWind row_wind(const ClothModel& model, double t, double h);
 
 }  // namespace unravel::sim

@@ -8,10 +8,11 @@ namespace unravel::sim {
 /// Air resistance and lift (sim/forces/air.hpp).
 extern const ForceTerm air_term;
 
-/// Empty without wind, and where forces are evaluated along rows.
+/// Empty without wind.
 struct AirMemory {
     AirCells cells;
-    std::vector<Vec3> force;  ///< (cells) N
+    std::vector<Vec3> force;  ///< (cells) N; empty where it is evaluated along rows
+    StiffAir stiff;           ///< of this step; empty where all is explicit
 };
 
 }  // namespace unravel::sim

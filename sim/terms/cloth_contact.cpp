@@ -1,5 +1,7 @@
 #include "sim/terms/cloth_contact.hpp"
 
+#include <algorithm>
+
 #include "sim/terms/terms.hpp"
 
 namespace unravel::sim {
@@ -18,6 +20,18 @@ void add_pairs(const ClothModel&, const ForceMemory& memory, std::span<Vec3> for
 void couple_pairs(const ClothModel&, const ForcesAt& at, const ForceMemory& memory, StepCouplings& out) {
     const SelfCollisionWorkspace& own = memory.self_collision;
     out.springs.push_back({&own.springs, &own.adjacency, &own.forces, at.drift_from_start});
+}
+
+// They come and go, so that what they hold is not measured: what they let go of has come from them.
+double release_pairs(const ClothModel&, const StepEnds& step, ForceMemory& memory) {
+    const ExtensionSprings& pairs = memory.self_collision.springs;
+    const auto energy = [&](std::size_t s, std::span<const Vec3> x) {
+        const double short_by = pairs.rest[s] - (x[pairs.j[s]] - x[pairs.i[s]]).norm();
+        return short_by > 0 ? 0.5 * pairs.stiffness[s] * short_by * short_by : 0.0;
+    };
+    double released = 0;
+    for (std::size_t s = 0; s < pairs.size(); ++s) released += energy(s, step.x) - energy(s, step.x_next);
+    return std::max(released, 0.0);
 }
 
 void count_pairs(const ForceMemory& memory, StepReport& report) {
@@ -41,7 +55,7 @@ const ForceTerm self_collision_term{
     .add = add_pairs,
     .couple = couple_pairs,
     .may_be_implicit = [](const ForceSettings&) { return true; },
-    .hides_energy = true,
+    .put_in = release_pairs,
     .count = count_pairs,
     .time = &StageTimes::collision,
     .effects = list_self_collision};

@@ -54,6 +54,26 @@ void measure_springs(const ClothModel& model, std::span<const Vec3> x, const For
     report.max_strain = *std::max_element(p99, ws.strain.end());
 }
 
+double gain_of_explicit(const ClothModel& model, const StepEnds& step, const ForceMemory&,
+                        MeasureWorkspace& ws) {
+    const ExtensionSprings& springs = model.springs;
+    return ws.sum(springs.size(), [&](std::size_t s) {
+        const std::uint32_t i = springs.i[s], j = springs.j[s];
+        const double rest = springs.rest[s], stiffness = springs.stiffness[s];
+        const double of_spring =
+            kappa_between(step.settings.h, model.mass[i], model.mass[j], stiffness, springs.damping[s]);
+        if (!is_explicit(of_spring, step.settings.splitting.threshold(s < springs.stretch_count))) return 0.0;
+        const Vec3 d = step.x[j] - step.x[i], d_next = step.x_next[j] - step.x_next[i];
+        const double length = d.norm();
+        double gain = extension_energy(d_next.norm(), rest, stiffness);
+        if (is_taut(length, rest)) {
+            gain -= extension_energy(length, rest, stiffness) +
+                    spring_pull(stiffness, length - rest, 0, 0).elastic / length * d.dot(d_next - d);
+        }
+        return gain;
+    });
+}
+
 bool resists_shear(const Cloth& cloth) {
     if (cloth.geometry) {
         return cloth.material.shear > 0 &&
@@ -86,6 +106,7 @@ const ForceTerm spring_term{.name = "stretch and shear",
                             .may_be_implicit = [](const ForceSettings&) { return true; },
                             .rows = &spring_rows,
                             .measure = measure_springs,
+                            .explicit_gain = gain_of_explicit,
                             .effects = list_springs};
 
 }  // namespace unravel::sim

@@ -44,6 +44,19 @@ void couple_stitches(const ClothModel&, const ForcesAt& at, const ForceMemory& m
     out.springs.push_back({&own.springs, &own.adjacency, &own.forces, at.drift_from_start});
 }
 
+// With the rest lengths that they shrink to in the step: what these add at its beginning, and what stays of
+// it at its end. Not measured, because it is no longer there once they have closed.
+double work_of_closing(const ClothModel&, const StepEnds& step, ForceMemory& memory) {
+    const ExtensionSprings& stitches = memory.stitches.springs;
+    const auto energy = [&](std::size_t s, std::span<const Vec3> x) {
+        return extension_energy((x[stitches.j[s]] - x[stitches.i[s]]).norm(), stitches.rest[s],
+                                stitches.stiffness[s]);
+    };
+    double released = 0;
+    for (std::size_t s = 0; s < stitches.size(); ++s) released += energy(s, step.x) - energy(s, step.x_next);
+    return std::max(released, 0.0);
+}
+
 void list_seams(const Scene& scene, std::vector<Effect>& effects) {
     std::size_t seams = 0;
     for (const Cloth& cloth : scene.cloths) seams += cloth.geometry ? cloth.geometry->seams.size() : 0;
@@ -60,8 +73,7 @@ const ForceTerm stitch_term{.name = "stitches",
                             .add = add_stitches,
                             .couple = couple_stitches,
                             .may_be_implicit = [](const ForceSettings&) { return true; },
-                            .hides_energy = true,
-                            .feeds = [](const ClothModel&) { return true; },
+                            .put_in = work_of_closing,
                             .time = &StageTimes::collision,
                             .effects = list_seams};
 

@@ -20,6 +20,7 @@ struct ForceSettings {
     Splitting splitting;
     double band = 0;                ///< see extension_forces()
     bool bend_is_implicit = false;  ///< bend springs get their Jacobian (sim/forces/bend.hpp)
+    bool all_explicit = false;      ///< nothing may be implicit, so that there is no linear system
     friend bool operator==(const ForceSettings&, const ForceSettings&) = default;
 };
 
@@ -34,6 +35,14 @@ struct ForcesAt {
     /// the solve [m]; empty: as the others'.
     std::span<const Vec3> drift_from_start;
     std::span<const Vec3> linearised_at() const { return ahead.empty() ? x : ahead; }
+};
+
+/// A step as a force sees it afterwards. Spans are (particles).
+struct StepEnds {
+    ForceSettings settings;
+    double t = 0;                          ///< s, when it began
+    std::span<const Vec3> x, v;            ///< where it began [m], [m/s]
+    std::span<const Vec3> x_next, v_next;  ///< where it has ended
 };
 
 /// What forces couple particles by; the cloths' own springs come first.
@@ -61,6 +70,12 @@ struct ForceTerm {
     void (*push)(const ClothModel& model, const ForcesAt& at, ForceMemory& memory,
                  std::span<Vec3> force) = nullptr;
 
+    /// A force that pushes, and in places changes too fast with velocity to be kept for all of a step: finds
+    /// those where the step begins. Their answer to what has changed since is then evaluated, added and
+    /// coupled as springs are, with every linearisation; where nothing is found, these do nothing. Not called
+    /// where all is explicit.
+    void (*stiffen)(const ClothModel& model, const ForcesAt& at, ForceMemory& memory) = nullptr;
+
     /// A force by springs: evaluates them at (x*, v*), with their Jacobians where they are implicit; then
     /// adds their forces, (particles) [N]; then hands those that may be implicit to the linear system.
     void (*evaluate)(const ClothModel& model, const ForcesAt& at, ForceMemory& memory) = nullptr;
@@ -79,10 +94,13 @@ struct ForceTerm {
     /// Adds its energy at x to the report's potential [J], and fills in what else a report tells of it.
     void (*measure)(const ClothModel& model, std::span<const Vec3> x, const ForceMemory& memory,
                     MeasureWorkspace& ws, StepReport& report) = nullptr;
-    /// Its springs hold energy that is not measured, so that energy may seem to come from nowhere.
-    bool hides_energy = false;
-    /// Whether it may put energy in; null: it only takes, or gives back what it holds.
-    bool (*feeds)(const ClothModel& model) = nullptr;
+    /// J, at least 0, that it has put in over a step beyond what it measures; null: it only takes, or gives
+    /// back what is measured. Asked for after the step, and where energy has grown.
+    double (*put_in)(const ClothModel& model, const StepEnds& step, ForceMemory& memory) = nullptr;
+    /// J by which what it measures has changed over a step beyond what its explicit forces, kept all along,
+    /// have taken from the motion: E(x') − E(x) + f(x)·(x' − x) of each explicit spring; null: none.
+    double (*explicit_gain)(const ClothModel& model, const StepEnds& step, const ForceMemory& memory,
+                            MeasureWorkspace& ws) = nullptr;
     /// Fills in what a report tells of the springs as they were evaluated.
     void (*count)(const ForceMemory& memory, StepReport& report) = nullptr;
     /// The stage that its time belongs to.

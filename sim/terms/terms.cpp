@@ -31,16 +31,4 @@ void conservative_forces(const ClothModel& model, std::span<const Vec3> x, Force
     });
 }
 
-bool forces_feed(const ClothModel& model) {
-    bool any = false;
-    each_term(model, [&](const ForceTerm& term) { any = any || (term.feeds && term.feeds(model)); });
-    return any;
-}
-
-bool forces_hide_energy(const ClothModel& model) {
-    bool any = false;
-    each_term(model, [&](const ForceTerm& term) { any = any || term.hides_energy; });
-    return any;
-}
-
 }  // namespace unravel::sim

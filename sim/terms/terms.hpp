@@ -43,10 +43,4 @@ void prepare_terms(const ClothModel& model, double h, ForceMemory& memory);
 void conservative_forces(const ClothModel& model, std::span<const Vec3> x, ForceMemory& memory,
                          std::span<Vec3> force);
 
-/// Whether a scene's forces may put energy in while it runs.
-bool forces_feed(const ClothModel& model);
-
-/// Whether some force holds energy that the measures don't see.
-bool forces_hide_energy(const ClothModel& model);
-
 }  // namespace unravel::sim

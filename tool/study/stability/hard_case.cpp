@@ -11,7 +11,6 @@
 #include "sim/scene_file/load.hpp"
 #include "sim/solids/sdf.hpp"
 #include "sim/step/explicit_limit.hpp"
-#include "sim/step/trace.hpp"
 #include "tool/study/stability/step_to_step.hpp"
 
 namespace unravel::tool {
@@ -94,8 +93,8 @@ Shadow shadow_terms(const ClothModel& model, ForceMemory& forces, const ClothSta
     return {0.5 * h * power, h * h / 12 * ((power - ahead) / h + squares)};
 }
 
-// Follows the energy: how far it rises above its least so far. `swing`: where steps without an implicit
-// spring change in length, each keeps another H + h/2 v·f, and no one quantity is kept by all. Whatever they
+// Follows the energy: how far it rises above its least so far. `swing`: where steps with explicit springs
+// change in length, each keeps another H + h/2 v·f, and no one quantity is kept by all. Whatever they
 // keep lies between H - h/2 |v·f| and H + h/2 |v·f|; what rises is then the least that it can be above the
 // most that it can have been.
 class EnergyWatch {
@@ -112,7 +111,7 @@ public:
     /// Largest rise so far, over the energy that there is.
     double add(const Simulation& simulation, const StepReport& report) {
         double energy = report.kinetic + report.potential;
-        const bool swings = swing_ && !trace_of(simulation.model, simulation.ws).coupled;
+        const bool swings = swing_ && report.explicit_ > 0;
         Shadow shadow;
         if (lags_ || swings) {
             prepare_terms(simulation.model, report.h / report.substeps, forces_);

@@ -1,0 +1,117 @@
+#include "sim/step/energy_input.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "sim/constraints/pins.hpp"
+#include "sim/mesh/mesh_solid.hpp"
+#include "sim/step/stage.hpp"
+
+namespace unravel::sim {
+
+namespace {
+
+StepEnds ends_of(const ClothState& after, const StepWorkspace& ws) {
+    return {ws.plan.forces.settings, ws.before.t, ws.before.x, ws.before.v, after.x, after.v};
+}
+
+double input_of_forces(const ClothModel& model, const StepEnds& ends, StepWorkspace& ws) {
+    double input = 0;
+    each_term(model, [&](const ForceTerm& term) {
+        if (term.put_in) input += term.put_in(model, ends, ws.forces.memory);
+    });
+    return input;
+}
+
+// A solid that stands still takes only; putting particles out of it is no work that the cloth may keep.
+bool moves(const Solid& solid) {
+    return !solid.motion.empty() || (solid.geometry && solid.geometry->deforms());
+}
+
+// Of a step of several parts: whether anything that may have put energy in was there at all.
+bool anything_acted(const ClothModel& model, const ClothState& after, const StepReport& report,
+                    StepWorkspace& ws) {
+    const ClothState& before = ws.before;
+    const auto moved = [&](const PinnedGroup& pin) {
+        const std::uint32_t p = pin.particles.front();
+        return holds(pin, after.t) && after.x[p] != before.x[p];
+    };
+    StepEnds ends = ends_of(after, ws);
+    ends.settings = ws.plan.step.forces.settings;
+    const bool touched = report.contacts > 0 || !before.contacts.empty();
+    return (touched && std::ranges::any_of(model.solids, moves)) || std::ranges::any_of(model.pins, moved) ||
+           input_of_forces(model, ends, ws) > 0;
+}
+
+// What pins and solids did: the impulses of constraints and of friction, along the way.
+double work_of_constraints(const ClothModel& model, const ClothState& after, StepWorkspace& ws) {
+    const ClothState& before = ws.before;
+    const ContactStage& contact = ws.contact;
+    find_reactions(model, ws);
+    const auto work = [&](std::size_t k, std::uint32_t p) {
+        Vec3 impulse = contact.reaction[k];
+        if (!contact.friction.empty()) impulse += contact.friction[p];
+        return impulse.dot(after.x[p] - before.x[p]) / ws.stage.h_force;
+    };
+    double pins = 0, solids = 0;
+    const std::span<const Constraint> all = ws.constraints.all();
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const std::uint32_t p = all[k].particle;
+        const auto touches = std::ranges::equal_range(contact.touches, p, {},
+                                                      [](const Touch& t) { return t.contact.particle; });
+        const auto moved = [&](const Touch& touch) { return moves(model.solids[touch.contact.solid]); };
+        if (touches.empty()) {
+            pins += work(k, p);
+        } else if (std::ranges::any_of(touches, moved)) {
+            solids += work(k, p);
+        }
+    }
+    return std::max(pins, 0.0) + std::max(solids, 0.0);
+}
+
+// What putting particles back out of moving solids (keep_outside()) has added to the step as it was solved.
+double gain_of_putting_back(const ClothModel& model, const ClothState& after, const StepReport& report,
+                            StepWorkspace& ws) {
+    if (std::ranges::none_of(model.solids, moves)) return 0;
+    std::vector<Vec3> x(model.size()), v(model.size());
+    bool any = false;
+    for (std::size_t p = 0; p < model.size(); ++p) {
+        v[p] = ws.stage.v_at[p] + ws.linear.dv[p];
+        x[p] = ws.base()[p] + ws.stage.h * v[p];
+        any = any || x[p] != after.x[p];
+    }
+    if (!any) return 0;
+    StepReport solved;
+    measure(model, ws.forces.memory, x, v, ws.measure, solved);
+    return std::max(0.0, report.kinetic + report.potential - solved.kinetic - solved.potential);
+}
+
+}  // namespace
+
+double energy_input(const ClothModel& model, const ClothState& after, const StepReport& report,
+                    StepWorkspace& ws) {
+    if (report.substeps > 1 || ws.plan.step.way == StepPlan::Way::swept) {
+        const bool acted = anything_acted(model, after, report, ws);
+        return acted ? std::numeric_limits<double>::infinity() : 0.0;
+    }
+    double input = input_of_forces(model, ends_of(after, ws), ws);
+    if (!ws.constraints.all().empty()) input += work_of_constraints(model, after, ws);
+    input += gain_of_putting_back(model, after, report, ws);
+    return input;
+}
+
+double energy_swing(const ClothModel& model, const ClothState& after, StepWorkspace& ws) {
+    const ClothState& before = ws.before;
+    if (!before.x_previous.empty() || !after.x_previous.empty() || !ws.linear.coupled) return 0;
+    const StepEnds ends = ends_of(after, ws);
+    double gain = 0;
+    each_term(model, [&](const ForceTerm& term) {
+        if (term.explicit_gain) gain += term.explicit_gain(model, ends, ws.forces.memory, ws.measure);
+    });
+    const double lost = ws.measure.sum(model.size(), [&](std::size_t p) {
+        return 0.5 * model.mass[p] * (after.v[p] - before.v[p]).squaredNorm();
+    });
+    return std::max(gain - lost, 0.0);
+}
+
+}  // namespace unravel::sim
