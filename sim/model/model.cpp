@@ -7,6 +7,7 @@
 
 #include "sim/mesh/mesh_cloth.hpp"
 #include "sim/mesh/placement.hpp"
+#include "sim/model/contact_model.hpp"
 #include "sim/model/mesh_links.hpp"
 #include "sim/model/mesh_springs.hpp"
 
@@ -181,6 +182,11 @@ SelfCollision fitting(SelfCollision settings, std::span<const Grid> grids, const
 
 }  // namespace
 
+bool ClothModel::solids_by_surfaces() const {
+    return std::ranges::any_of(solids,
+                               [](const Solid& solid) { return solid.contact == ContactMethod::surface; });
+}
+
 AirCells air_cells(const ClothModel& model) {
     AirCells air;
     for (const ClothPatch& patch : model.cloths) {
@@ -249,6 +255,7 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
         model.self_collision = fitting(*scene.self_collision, grids, model);
         find_mesh_neighbours(model);
     }
+    model.contact = make_contact_model(scene, model, placement);
     model.spring_adjacency = !model.grids.empty() && model.grids.size() == model.cloths.size()
                                  ? adjacency_of(model.grids)
                                  : adjacency_of(model.size(), model.springs.i, model.springs.j);

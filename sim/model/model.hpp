@@ -65,7 +65,8 @@ struct Stitches {
     std::size_t size() const { return i.size(); }
 };
 
-struct ForceTerm;  // sim/terms/term.hpp
+struct ContactModel;  // sim/model/contact_model.hpp
+struct ForceTerm;     // sim/terms/term.hpp
 
 /// Everything that does not change while the cloth moves: topology, rest shape, masses, springs, pins, and
 /// the effects that the scene calls for. Const once built.
@@ -82,9 +83,16 @@ struct ClothModel {
     std::vector<Solid> solids;                    ///< what the cloth meets; empty: no contact at all
     std::optional<Wind> wind;                     ///< absent: no air at all
     std::optional<SelfCollision> self_collision;  ///< absent: none; what the scene leaves open is filled in
+    std::shared_ptr<const ContactModel> contact;  ///< null where no surfaces meet (make_contact_model())
     Neighbours neighbours;                        ///< of particles of meshes; empty without self-collision
     std::vector<const ForceTerm*> further_terms;  ///< forces besides those of scenes; not owned
     std::size_t size() const { return mass.size(); }
+    /// Whether cloth meets cloth, or a solid, between surfaces.
+    bool cloth_by_surfaces() const {
+        return self_collision && self_collision->method == ContactMethod::surface;
+    }
+    bool solids_by_surfaces() const;
+    bool by_surfaces() const { return cloth_by_surfaces() || solids_by_surfaces(); }
 };
 
 /// The cells of all cloths, for the air.

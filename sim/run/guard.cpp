@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/mesh/mesh_solid.hpp"
+#include "sim/model/particle_name.hpp"
 #include "sim/step/trace.hpp"
 
 namespace unravel::sim {
@@ -31,6 +32,8 @@ std::string advice_for(Criterion criterion, const StepOptions& options, double h
             return fmt::format(
                 "raise solver.max_iterations (now {}), take a smaller step, or soften what is stiffest",
                 options.solve.max_iterations);
+        case Criterion::pinched:
+            break;  // says it itself
     }
     return "";
 }
@@ -55,19 +58,6 @@ std::vector<std::uint32_t> worst_particles(std::size_t n, double low, const F& f
 
 double strain_of(const ClothModel& model, const std::vector<Vec3>& x, std::uint32_t s) {
     return spring_strain((x[model.springs.j[s]] - x[model.springs.i[s]]).norm(), model.springs.rest[s]);
-}
-
-std::string particle_name(const ClothModel& model, std::uint32_t p) {
-    std::size_t c = 0;
-    while (p >= model.cloths[c].first + model.cloths[c].count()) ++c;
-    const ClothPatch& patch = model.cloths[c];
-    if (!patch.grid())
-        return fmt::format("particle {} (vertex {}{})", p, p - patch.first + 1,
-                           model.cloths.size() > 1 ? " of cloth " + std::to_string(c) : std::string());
-    const auto nu = static_cast<std::uint32_t>(patch.particles[0]);
-    const std::string where =
-        fmt::format("particle {} (u {}, v {}", p, (p - patch.first) % nu, (p - patch.first) / nu);
-    return where + (model.cloths.size() > 1 ? fmt::format(" of cloth {})", c) : std::string(")"));
 }
 
 struct Judgement {
@@ -158,7 +148,7 @@ struct Judgement {
 }  // namespace
 
 const char* criterion_name(Criterion criterion) {
-    constexpr const char* names[] = {"not_finite", "strain", "energy", "unsolved"};
+    constexpr const char* names[] = {"not_finite", "strain", "energy", "unsolved", "pinched"};
     return names[static_cast<int>(criterion)];
 }
 
@@ -200,7 +190,8 @@ Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
     const double of_rounding = energy_of_rounding(model, start, h);
     guard.energy = height + 2.0 * (spent + of_rounding);
     guard.total = report.kinetic + report.potential;
-    if (!forces_hide_energy(model)) guard.rounding = rounding_share * spent + of_rounding;
+    if (!forces_hide_energy(model) && !model.by_surfaces())
+        guard.rounding = rounding_share * spent + of_rounding;
     return guard;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/run/adaptive_step.hpp"
+#include "sim/run/passages.hpp"
 #include "sim/step/trace.hpp"
 
 namespace unravel::sim {
@@ -66,6 +67,12 @@ FrameRecord next_record(Simulation& simulation) {
     const auto due = static_cast<std::uint64_t>(simulation.frame + 1) * simulation.steps_per_frame;
     while (simulation.state.whole_steps < due) reports.push_back(next_step(simulation));
     ++simulation.frame;
+    if (simulation.model.contact && !reports.empty()) {
+        const Passages passages = find_passages(simulation.model, simulation.state.t, simulation.state.x);
+        reports.back().crossings = passages.cloth_count();
+        reports.back().in_solids = passages.solids;
+        reports.back().deepest = passages.deepest;
+    }
     FrameRecord record = present_record(simulation);
     record.reports = std::move(reports);
     return record;

@@ -94,6 +94,13 @@ constexpr Words words_of(Activation) {
     return activation_words;
 }
 
+/// What meets what: particles alone; or vertices, edges and faces of the cloth.
+enum class ContactMethod { particles, surface };
+inline constexpr std::string_view contact_method_words[] = {"particles", "surface"};
+constexpr Words words_of(ContactMethod) {
+    return contact_method_words;
+}
+
 enum class Weave { plain, twill, checks, stripes, solid };
 inline constexpr std::string_view weave_words[] = {"plain", "twill", "checks", "stripes", "solid"};
 constexpr Words words_of(Weave) {

@@ -175,7 +175,8 @@ struct Solid {
     Vec3 pivot{0, 0, 0};     ///< m, in the world at the start; default: its centre
     Friction friction;
     double offset = 0.004;  ///< m, distance at which cloth is held off the surface (its skin)
-    std::string color;      ///< "#rrggbb"; empty: the look's default
+    ContactMethod contact = ContactMethod::particles;  ///< what of the cloth it holds off
+    std::string color;                                 ///< "#rrggbb"; empty: the look's default
     SourcePlace place;
 };
 
@@ -226,9 +227,11 @@ struct Wind {
 };
 
 struct SelfCollision {
-    double thickness = 0;  ///< m; 0: from the particle spacing
-    double stiffness = 0;  ///< N/m of a temporary spring; 0: from the material
-    double damping = 0;    ///< N·s/m
+    ContactMethod method = ContactMethod::particles;  ///< `particles`: as in the paper, Sec. 2.2
+    double thickness = 0;  ///< m; 0: from the particles' spacing; of surfaces from each cloth's density
+    double stiffness = 0;  ///< N/m of a contact; 0: from the material
+    double damping = 0;    ///< N·s/m; of surfaces 0 is a fifth of critical
+    Friction friction;     ///< between layers; between surfaces only
     SourcePlace place;
 };
 

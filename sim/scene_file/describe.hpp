@@ -20,6 +20,8 @@ void describe(Fields&, Keyframe&);
 void describe(Fields&, MeshFile&, const Key& file, bool body);
 void describe(Fields&, MeshFrames&, bool applies);
 void describe(Fields&, Solid&);
+/// A key that is a number, or a table of static and kinetic.
+void describe_friction(Fields&, const Key&, Friction&);
 void describe(Fields&, Wind&);
 void describe(Fields&, WindKey&);
 void describe(Fields&, SelfCollision&);

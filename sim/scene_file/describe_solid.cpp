@@ -31,6 +31,14 @@ std::string of_shapes(bool ShapeSizes::*size, std::string_view what) {
 
 }  // namespace
 
+void describe_friction(Fields& f, const Key& key, Friction& friction) {
+    const bool plain = f.number_or_table(key, friction.static_, friction_bounds, [&](Fields& g) {
+        describe(g, friction);
+        if (g.reading() && !g.says("kinetic")) friction.kinetic = 0.8 * friction.static_;
+    });
+    if (plain) friction.kinetic = 0.8 * friction.static_;
+}
+
 void describe(Fields& f, MeshFrames& frames, bool applies) {
     f.text({"mesh_frames", "how the mesh deforms: a PC2 file, or OBJ files numbered where the name has '#'",
             false, applies},
@@ -80,15 +88,15 @@ void describe(Fields& f, Solid& solid) {
            solid.motion, ListForm::inline_tables, in_order<Keyframe>());
     if (f.reading()) solid.pivot = solid.center;
     f.vector({"pivot", "m, in the world at the start; default: the center"}, solid.pivot, position_bounds);
-    const bool plain = f.number_or_table(
-        {"friction", "a number, or {static, kinetic}; a number mu stands for static mu, kinetic 0.8 mu"},
-        solid.friction.static_, friction_bounds, [&](Fields& g) {
-            describe(g, solid.friction);
-            if (g.reading() && !g.says("kinetic")) solid.friction.kinetic = 0.8 * solid.friction.static_;
-        });
-    if (plain) solid.friction.kinetic = 0.8 * solid.friction.static_;
+    describe_friction(
+        f, {"friction", "a number, or {static, kinetic}; a number mu stands for static mu, kinetic 0.8 mu"},
+        solid.friction);
     f.number({"offset", "m, distance at which cloth is held off the surface"}, solid.offset,
              {0, 1, false, "m"});
+    f.choice(
+        {"contact", "what of the cloth it holds off: particles alone, or edges and faces too; not of meshes",
+         false, !mesh || (!f.reading() && !f.writing())},
+        solid.contact);
     f.text({"color", "\"#rrggbb\"; default: the look's"}, solid.color, TextKind::color);
 }
 

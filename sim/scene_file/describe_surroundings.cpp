@@ -31,9 +31,22 @@ void describe(Fields& f, Camera::Key& key) {
 
 void describe(Fields& f, SelfCollision& self) {
     f.place(self.place);
-    f.number({"thickness", "m; 0: from the particle spacing"}, self.thickness, {0, 1, false, "m"});
-    f.number({"stiffness", "N/m; 0: from the material"}, self.stiffness, {0, 1e9, false, "N/m"});
-    f.number({"damping", "N·s/m"}, self.damping, {0, 1e6, false, "N·s/m"});
+    f.choice({"method", "what touches what: particles alone, or vertices, edges and faces of the cloth"},
+             self.method);
+    const bool surface = self.method == ContactMethod::surface || (!f.reading() && !f.writing());
+    f.number({"thickness",
+              "m, at which layers touch; 0: 0.75 of the particle spacing, or where surfaces touch that of "
+              "cloth of 100 kg/m³"},
+             self.thickness, {0, 1, false, "m"});
+    f.number({"stiffness", "N/m of a contact; 0: from the material"}, self.stiffness, {0, 1e9, false, "N/m"});
+    f.number({"damping", "N·s/m of a contact; where surfaces touch, 0 is a fifth of critical"}, self.damping,
+             {0, 1e6, false, "N·s/m"});
+    describe_friction(f,
+                      {"friction",
+                       "between layers, where surfaces touch: a number, or {static, kinetic}; a number mu "
+                       "stands for static mu, kinetic 0.8 mu",
+                       false, surface},
+                      self.friction);
 }
 
 void describe(Fields& f, Camera& camera) {

@@ -34,11 +34,16 @@ void add_forces(const ClothModel& model, StepWorkspace& ws) {
     }
     const Stage& stage = ws.stage;
     const bool rubbed = !ws.contact.friction.empty();
+    const bool surfaces = !ws.contact.surfaces.stencils.empty();
+    const auto pushed = [&](std::size_t p) {
+        return surfaces ? contact_force(ws.contact.surfaces, static_cast<std::uint32_t>(p))
+                        : Vec3(Vec3::Zero());
+    };
     ws.linear.impulse.resize(model.size());
     parallel_each(model.size(), [&](std::size_t p) {
         const Vec3 friction = rubbed ? ws.contact.friction[p] : Vec3(Vec3::Zero());
-        ws.linear.impulse[p] =
-            friction + stage.h_force * forces.sum[p] + model.mass[p] * (stage.v[p] - stage.v_at[p]);
+        ws.linear.impulse[p] = friction + stage.h_force * (forces.sum[p] + pushed(p)) +
+                               model.mass[p] * (stage.v[p] - stage.v_at[p]);
     });
 }
 
@@ -106,6 +111,37 @@ void place_linearisation(const ClothModel& model, const StepOptions& options, St
     });
 }
 
+// Where the step would end if nothing but gravity and the constraints changed v*.
+std::span<const Vec3> foresee(const ClothModel& model, StepWorkspace& ws) {
+    const Stage& stage = ws.stage;
+    const std::span<const Vec3> base = ws.base();
+    std::vector<Vec3>& foreseen = ws.contact.foreseen;
+    foreseen.resize(model.size());
+    parallel_each(model.size(), [&](std::size_t p) {
+        const Constraint* c = ws.constraints.find(static_cast<std::uint32_t>(p));
+        const Vec3 fall = stage.h_force * model.gravity;
+        const Vec3 dv = c ? Vec3(c->S * (fall - c->z) + c->z) : fall;
+        foreseen[p] = base[p] + stage.h * (stage.v_at[p] + dv);
+    });
+    return foreseen;
+}
+
+// Contact of cloth with cloth and of edges and faces with solids, between surfaces, at (x*, v*).
+void find_surface_contacts(const ClothModel& model, StepWorkspace& ws) {
+    const Stage& stage = ws.stage;
+    const ForceSettings& settings = ws.plan.forces.settings;
+    const double threshold = settings.splitting.stretch_threshold;
+    SurfaceContactWorkspace& surfaces = ws.contact.surfaces;
+    const std::span<const Vec3> foreseen = foresee(model, ws);
+    begin_contacts(surfaces);
+    if (model.cloth_by_surfaces())
+        find_contacts(model, stage.x_at, stage.v_at, foreseen, settings.h, threshold, surfaces);
+    if (model.solids_by_surfaces())
+        find_solid_contacts(model, ws.contact.poses, stage.x_at, stage.v_at, foreseen, settings.h, threshold,
+                            surfaces);
+    end_contacts(model.size(), surfaces);
+}
+
 // Sum over particles of |S y|²/m, of the stage's right-hand side y: what Newton's method makes small.
 double residual_of(const ClothModel& model, const StepWorkspace& ws) {
     double sum = 0;
@@ -144,6 +180,9 @@ StepCouplings couplings_of(const ClothModel& model, const StepWorkspace& ws) {
     for (const ForcePlan::Term& planned : ws.plan.forces.terms) {
         if (planned.implicit) planned.term->couple(model, at, ws.forces.memory, couplings);
     }
+    const SurfaceContactWorkspace& surfaces = ws.contact.surfaces;
+    if (!surfaces.stencils.empty())
+        couplings.stencils.push_back({surfaces.stencils, surfaces.state, at.drift_from_start});
     return couplings;
 }
 
@@ -189,6 +228,10 @@ void linearise(const ClothModel& model, const StepOptions& options, StageTimer& 
                StepReport& report) {
     const Stage& stage = ws.stage;
     LinearStage& linear = ws.linear;
+    if (model.by_surfaces()) {
+        find_surface_contacts(model, ws);
+        timer.lap(report.times.collision);
+    }
     place_linearisation(model, options, ws);
     timer.lap(report.times.forces);
     for (const ForcePlan::Term& planned : ws.plan.forces.terms) {
@@ -206,7 +249,8 @@ void linearise(const ClothModel& model, const StepOptions& options, StageTimer& 
     drift_from(forces_at(ws).linearised_at(), linear.drift);
     linear.drift_from_start.clear();
     const auto implicit = [](const ForcePlan::Term& planned) { return planned.implicit; };
-    if (!ws.forces.ahead.empty() && std::ranges::count_if(ws.plan.forces.terms, implicit) > 1)
+    if (!ws.forces.ahead.empty() &&
+        (!ws.contact.surfaces.stencils.empty() || std::ranges::count_if(ws.plan.forces.terms, implicit) > 1))
         drift_from(stage.x_at, linear.drift_from_start);
     timer.lap(report.times.forces);
 }

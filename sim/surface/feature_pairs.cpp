@@ -18,13 +18,14 @@ struct LeafPairs {
     PairList& vertex_triangle;
     PairList& edge_edge;
 
+    bool differ(std::uint32_t p, std::uint32_t q) const { return surface.joint[p] != surface.joint[q]; }
     void try_vertices(std::uint32_t vertices_of, std::uint32_t triangles_of) {
         for (const std::uint32_t p : tree.vertices.of(vertices_of)) {
             const Box& box = tree.vertex_box[p];
             for (const std::uint32_t t : tree.triangles.of(triangles_of)) {
                 if (!box.overlaps(tree.triangle_box[t])) continue;
                 const auto& [a, b, c] = surface.triangles[t];
-                if (p != a && p != b && p != c) vertex_triangle.push_back({p, t});
+                if (differ(p, a) && differ(p, b) && differ(p, c)) vertex_triangle.push_back({p, t});
             }
         }
     }
@@ -35,7 +36,7 @@ struct LeafPairs {
             for (const std::uint32_t g : tree.edges.of(other)) {
                 if ((one == other && g <= e) || !box.overlaps(tree.edge_box[g])) continue;
                 const auto& [c, d] = surface.edges[g];
-                if (a != c && a != d && b != c && b != d)
+                if (differ(a, c) && differ(a, d) && differ(b, c) && differ(b, d))
                     edge_edge.push_back({std::min(e, g), std::max(e, g)});
             }
         }

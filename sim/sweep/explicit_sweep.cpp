@@ -81,6 +81,7 @@ std::string why_not_swept(const ClothModel& model) {
         if (why.empty() && !term.rows && !term.part_of_rows)
             why = fmt::format("{} has no version along rows", term.name);
     });
+    if (why.empty() && model.by_surfaces()) why = "surfaces meet, not particles alone";
     for (const Solid& solid : model.solids) {
         if (why.empty() && solid.shape == Shape::mesh)
             why = fmt::format("the solid {} is a mesh", solid.name);

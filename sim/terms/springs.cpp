@@ -47,11 +47,12 @@ void measure_springs(const ClothModel& model, std::span<const Vec3> x, const For
         return extension_energy(length, springs.rest[s], springs.stiffness[s]);
     });
     if (ws.strain.empty()) return;
+    report.strained = static_cast<std::uint32_t>(std::ranges::max_element(ws.strain) - ws.strain.begin());
+    report.max_strain = ws.strain[report.strained];
     const auto p99 =
         ws.strain.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(ws.strain.size() - 1));
     std::nth_element(ws.strain.begin(), p99, ws.strain.end());
     report.p99_strain = *p99;
-    report.max_strain = *std::max_element(p99, ws.strain.end());
 }
 
 bool resists_shear(const Cloth& cloth) {

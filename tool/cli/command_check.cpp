@@ -8,8 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/mesh/mesh_facts.hpp"
+#include "sim/model/contact_model.hpp"
+#include "sim/run/passages.hpp"
 #include "sim/run/simulate.hpp"
 #include "sim/scene_file/load.hpp"
+#include "sim/solids/shape.hpp"
 #include "sim/step/explicit_limit.hpp"
 #include "sim/step/plan_text.hpp"
 #include "sim/terms/effects.hpp"
@@ -102,6 +105,59 @@ double round_down(double step) {
     return std::floor(step / unit) * unit;
 }
 
+// The longest stretch spring at rest [m].
+double widest_spacing(const ClothModel& model) {
+    double widest = 0;
+    for (std::uint32_t s = 0; s < model.springs.stretch_count; ++s)
+        widest = std::max(widest, model.springs.rest[s]);
+    return widest;
+}
+
+// At which distance layers touch, and what passes through what at the start.
+std::vector<std::string> contact_notes(const Scene& scene, const Simulation& simulation) {
+    std::vector<std::string> notes;
+    const ClothModel& model = simulation.model;
+    if (!model.contact) return notes;
+    const ContactModel& contact = *model.contact;
+    for (std::size_t c = 0; c < contact.thickness.size(); ++c) {
+        const std::string name = scene.cloths[c].name.empty()
+                                     ? fmt::format("cloth {}", c)
+                                     : fmt::format("cloth \"{}\"", scene.cloths[c].name);
+        if (contact.thickness[c] < contact.wanted[c])
+            notes.push_back(fmt::format(
+                "layers of {} touch at {:.2g} mm instead of {:.2g} mm: the start leaves them no more", name,
+                1e3 * contact.thickness[c], 1e3 * contact.wanted[c]));
+    }
+    const Passages passages = find_passages(model, 0, simulation.state.x);
+    if (!passages.cloth.empty()) {
+        const Vec3 at = place_of(contact.surface, simulation.state.x, passages.cloth.front());
+        notes.push_back(
+            fmt::format("at the start {} edges of cloth pass through cloth, the first near "
+                        "[{:.3f}, {:.3f}, {:.3f}]; they are not taken apart",
+                        passages.cloth.size(), at.x(), at.y(), at.z()));
+    }
+    if (passages.solids.value_or(0) > 0) {
+        const Vec3& at = simulation.state.x[passages.deepest_particle];
+        notes.push_back(
+            fmt::format("at the start {} edges of cloth pass through solids, up to {:.2g} mm deep near "
+                        "[{:.3f}, {:.3f}, {:.3f}]",
+                        *passages.solids, 1e3 * passages.deepest, at.x(), at.y(), at.z()));
+    }
+    for (std::size_t s = 0; s < model.solids.size(); ++s) {
+        const Solid& solid = model.solids[s];
+        const double thickness = 2 * law_of(solid.shape).half_extents(solid).minCoeff(),
+                     spacing = widest_spacing(model);
+        if (!law_of(solid.shape).surface || solid.contact == ContactMethod::surface || thickness >= spacing)
+            continue;
+        notes.push_back(fmt::format(
+            "{} is {:.2g} mm thick and particles are up to {:.2g} mm apart: they may miss it; contact = "
+            "\"surface\" holds edges and faces off, too",
+            solid.name.empty() ? fmt::format("solid {}", s) : fmt::format("solid \"{}\"", solid.name),
+            1e3 * thickness, 1e3 * spacing));
+    }
+    return notes;
+}
+
 int check(const CheckOptions& options) {
     const Scene scene = load_scene(options.scene, options.overrides);
     check_textures(scene, scene.home);
@@ -115,6 +171,8 @@ int check(const CheckOptions& options) {
     BendLimit limit;
     limit_bend(simulation.model.bends, simulation.model.mass, scene.solver.step, limit);
 
+    std::vector<std::string> notes = scene.notes;
+    for (std::string& note : contact_notes(scene, simulation)) notes.push_back(std::move(note));
     const StepPlan& plan = plan_step(simulation.model, simulation.options, scene.solver.step, simulation.ws);
 
     if (options.output.json) {
@@ -128,7 +186,7 @@ int check(const CheckOptions& options) {
                                     {"estimated_picture_seconds", pictures},
                                     {"bend_springs_limited", limit.limited}};
         json["meshes"] = meshes_json(scene);
-        json["notes"] = scene.notes;
+        json["notes"] = notes;
         for (const Effect& e : effects) json["effects"][e.name] = {{"on", e.on}, {"because", e.because}};
         json["plan"] = plan_json(plan);
         fmt::print("{}\n", json.dump(2));
@@ -152,7 +210,7 @@ int check(const CheckOptions& options) {
     for (const auto& [name, words] : plan_words(plan)) fmt::print("  {:<19} {}\n", name, words);
     for (const Effect& e : effects)
         fmt::print("  {:<15} {} because {}\n", e.name, e.on ? "on, " : "off,", e.because);
-    for (const std::string& note : scene.notes) fmt::print("  note: {}\n", note);
+    for (const std::string& note : notes) fmt::print("  note: {}\n", note);
     if (limit.limited > 0) {
         fmt::print(
             "  note: {} of {} bend springs resist the onset of buckling less than the material would, so "

@@ -148,7 +148,7 @@ void write_report_page(const Scene& scene, const ClothModel& model, const RunFol
     data["fps"] = scene.clip.fps;
     data["series"] = page_series(frames, reports, model);
     data["summary"] = page_summary(scene, model, frames, reports, facts.status);
-    data["warnings"] = page_warnings(scene, frames, reports, facts.status);
+    data["warnings"] = page_warnings(scene, model, frames, reports, facts.status);
     data["effects"] = Json::array();
     for (const Effect& effect : list_effects(scene)) {
         data["effects"].push_back({{"name", effect.name}, {"on", effect.on}, {"because", effect.because}});

@@ -134,6 +134,7 @@ TEST_CASE("the complete scene's values arrive where they belong", "[scene]") {
     CHECK(scene.solids[0].size == Vec3(0.6, 0.05, 0.7));
     CHECK(scene.solids[0].round == 0.01);
     CHECK(scene.solids[0].offset == 0.006);
+    CHECK(scene.solids[0].contact == ContactMethod::surface);
     CHECK(scene.solids[0].color == "#123abc");
     CHECK(scene.solids[0].pivot == Vec3(0, 0.5, 0));
     CHECK(scene.solids[1].pivot == Vec3(3, 0.625, 0));
@@ -147,6 +148,8 @@ TEST_CASE("the complete scene's values arrive where they belong", "[scene]") {
     CHECK(scene.wind->keyframes[1].velocity == Vec3(3, 0, 0));
     CHECK(scene.wind->gust->seed == 9);
     CHECK(scene.self_collision->stiffness == 70);
+    CHECK(scene.self_collision->method == ContactMethod::surface);
+    CHECK(scene.self_collision->friction.kinetic == 0.25);
     REQUIRE(scene.cameras.size() == 2);
     CHECK(scene.cameras[0].orbit == 30);
     CHECK(scene.cameras[1].keyframes[1].position == Vec3(2, 2, 3));
