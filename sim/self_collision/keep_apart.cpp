@@ -11,9 +11,9 @@ namespace unravel::sim {
 
 namespace {
 
-// What is kept between surfaces within a step, as a share of the thickness; and of what there is at the start
-// where that is less.
-constexpr double kept_share = 0.1, kept_of_distance = 0.5;
+// What is kept between surfaces within a step is kept_share of the thickness; and this of what there is at
+// the start where that is less.
+constexpr double kept_of_distance = 0.5;
 // Impacts end with this share of the thickness between them, at most with what they had.
 constexpr double end_share = 0.2, end_of_distance = 0.9;
 // Sweeps over impacts before groups move as one, and sweeps altogether.
@@ -29,7 +29,7 @@ struct Impacts {
     std::span<const Vec3> x;
     const Constraints& constraints;
     std::span<const std::uint8_t> fixed;
-    const FeaturePairs& pairs;
+    const PairWatch& pairs;
     KeepApartWorkspace& ws;
 
     std::size_t size() const { return pairs.vertex_triangle.size() + pairs.edge_edge.size(); }
@@ -189,28 +189,17 @@ Apart keep_apart(const ClothModel& model, std::span<const Vec3> x, const Constra
                  std::span<const std::uint8_t> fixed, std::span<Vec3> end, SurfaceContactWorkspace& ws,
                  KeepApartWorkspace& scratch) {
     Apart report;
-    if (!within_search(x, end, ws)) search_pairs(model, x, end, ws);
     scratch.step.resize(x.size());
     parallel_each(x.size(), [&](std::size_t p) { scratch.step[p] = end[p] - x[p]; });
     scratch.moved.assign(x.size(), 1);
     scratch.zone.clear();
-    Impacts impacts{model, x, constraints, fixed, ws.pairs, scratch};
-    bool changed = false;
+    Impacts impacts{model, x, constraints, fixed, ws.watch, scratch};
     for (int round = 0;; ++round) {
+        // Impacts send particles where others may be, and pairs that slept.
+        watch_pairs(model, x, end, ws);
         impacts.find();
         if (round == 0) report.impacts = static_cast<std::uint32_t>(scratch.impacts.size());
-        if (scratch.impacts.empty()) {
-            if (!changed) return report;
-            parallel_each(x.size(), [&](std::size_t p) {
-                if (!fixed[p]) end[p] = x[p] + scratch.step[p];
-            });
-            if (within_search(x, end, ws)) return report;
-            // Impacts have sent something beyond where pairs were looked for.
-            search_pairs(model, x, end, ws);
-            std::fill(scratch.moved.begin(), scratch.moved.end(), std::uint8_t{1});
-            continue;
-        }
-        changed = true;
+        if (scratch.impacts.empty()) return report;
         if (round >= most_rounds) {
             report.kept = false;
             report.particles = impacts.corners(scratch.impacts.front());
@@ -225,6 +214,9 @@ Apart keep_apart(const ClothModel& model, std::span<const Vec3> x, const Constra
         for (const std::uint32_t k : scratch.impacts) {
             for (const std::uint32_t p : impacts.corners(k)) scratch.moved[p] = 1;
         }
+        parallel_each(x.size(), [&](std::size_t p) {
+            if (scratch.moved[p] && !fixed[p]) end[p] = x[p] + scratch.step[p];
+        });
     }
 }
 

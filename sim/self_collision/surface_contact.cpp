@@ -11,9 +11,9 @@ namespace {
 
 // A contact that is not closed yet is one when it would close by more than this share of the thickness.
 constexpr double closing_share = 0.01;
-// Particles are searched for around this share of a thickness beyond what they can touch: forces turn them
-// from the way that they seemed to go.
-constexpr double search_margin = 0.5;
+// Pairs are searched for around the way of this many steps, and around this share of a thickness beyond it:
+// forces turn particles from the way that they seemed to go.
+constexpr double steps_ahead = 4, search_margin = 1;
 // Sine of the angle by which a face may rise from its edge towards the other edge.
 constexpr double rising = 0.3;
 // Sliding slower than this is rest, but for a creep [m/s].
@@ -72,6 +72,13 @@ bool faces_edge(const Surface& surface, std::span<const Vec3> x, std::uint32_t e
         }
     }
     return true;
+}
+
+// The mean of all particles' ways. [m]
+Vec3 mean_motion(std::span<const Vec3> from, std::span<const Vec3> to) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t p = 0; p < from.size(); ++p) sum += to[p] - from[p];
+    return from.empty() ? sum : Vec3(sum / static_cast<double>(from.size()));
 }
 
 struct Finder {
@@ -201,45 +208,69 @@ void end_contacts(std::size_t particles, SurfaceContactWorkspace& ws) {
     list_by_particle(particles, ws);
 }
 
+namespace {
+
+// Finds all pairs that can come within their thickness while particles go from x towards `ahead`, and on at
+// that pace for a few steps, and a margin around that way.
 void search_pairs(const ClothModel& model, std::span<const Vec3> x, std::span<const Vec3> ahead,
                   SurfaceContactWorkspace& ws) {
     const ContactModel& contact = *model.contact;
     if (ws.model != model.contact) {
         ws.model = model.contact;
         ws.tree = contact.tree;
-        ws.boxes.clear();
     }
     // Motion that all share brings nothing nearer to anything.
-    ws.ride.setZero();
-    for (std::size_t p = 0; p < x.size(); ++p) ws.ride += (ahead[p] - x[p]) / static_cast<double>(x.size());
-    ws.boxes.resize(x.size());
-    parallel_each(x.size(), [&](std::size_t p) {
-        const double reach = (0.5 + search_margin) * contact.thickness[contact.surface.cloth[p]];
-        const Vec3 end = ahead[p] - ws.ride;
-        ws.boxes[p] = {x[p].cwiseMin(end) - Vec3::Constant(reach),
-                       x[p].cwiseMax(end) + Vec3::Constant(reach)};
+    const Vec3 ride = mean_motion(x, ahead);
+    const std::size_t n = x.size();
+    ws.searched.assign(x.begin(), x.end());
+    ws.boxes.resize(n);
+    std::vector<Box> reaching(n);
+    parallel_each(n, [&](std::size_t p) {
+        const double thickness = contact.thickness[contact.surface.cloth[p]];
+        const Vec3 way = steps_ahead * (ahead[p] - x[p] - ride);
+        const Vec3 margin = Vec3::Constant(search_margin * thickness),
+                   reach = Vec3::Constant(0.5 * thickness);
+        const Vec3 end = x[p] + way;
+        ws.boxes[p] = {x[p].cwiseMin(end) - margin, x[p].cwiseMax(end) + margin};
+        reaching[p] = {ws.boxes[p].low - reach, ws.boxes[p].high + reach};
     });
-    ws.tree.refit(contact.surface, ws.boxes);
+    ws.tree.refit(contact.surface, reaching);
     find_pairs(contact.surface, ws.tree, ws.pairs);
+    ws.watch.begin(contact.surface, ws.tree, ws.pairs, x,
+                   [&](FeaturePair kind, const std::array<std::uint32_t, 2>& pair) {
+                       const std::array<std::uint32_t, 4> p = corners_of(contact.surface, kind, pair);
+                       const double thickness = contact.pair_thickness(p[0], p[3]);
+                       return contact.are_near(kind, p) ? kept_share * thickness : thickness;
+                   });
 }
 
+// Whether all particles go from x to `end` within their boxes of the last search, so that it missed no pair.
 bool within_search(std::span<const Vec3> x, std::span<const Vec3> end, const SurfaceContactWorkspace& ws) {
     if (ws.boxes.size() != x.size()) return false;
     const auto holds = [](const Box& box, const Vec3& at) {
         return (at.array() >= box.low.array()).all() && (at.array() <= box.high.array()).all();
     };
+    const Vec3 ridden = mean_motion(ws.searched, x), ride = mean_motion(ws.searched, end);
     for (std::size_t p = 0; p < end.size(); ++p) {
-        if (!holds(ws.boxes[p], x[p]) || !holds(ws.boxes[p], end[p] - ws.ride)) return false;
+        if (!holds(ws.boxes[p], x[p] - ridden) || !holds(ws.boxes[p], end[p] - ride)) return false;
     }
     return true;
 }
 
+}  // namespace
+
+void watch_pairs(const ClothModel& model, std::span<const Vec3> x, std::span<const Vec3> end,
+                 SurfaceContactWorkspace& ws) {
+    if (ws.model != model.contact || !within_search(x, end, ws)) search_pairs(model, x, end, ws);
+    ws.watch.wake(model.contact->surface, ws.tree, ws.pairs, x, end);
+}
+
 void find_contacts(const ClothModel& model, std::span<const Vec3> x, std::span<const Vec3> v,
                    std::span<const Vec3> ahead, double h, double threshold, SurfaceContactWorkspace& ws) {
-    search_pairs(model, x, ahead, ws);
+    watch_pairs(model, x, ahead, ws);
     const Finder finder{model, x, v, ahead, h, threshold};
-    const PairList& vt = ws.pairs.vertex_triangle;
-    const PairList& ee = ws.pairs.edge_edge;
+    const PairList& vt = ws.watch.vertex_triangle;
+    const PairList& ee = ws.watch.edge_edge;
     const std::size_t pairs = vt.size() + ee.size();
     ws.found.resize(chunk_count(pairs));
     double thickest = 0;

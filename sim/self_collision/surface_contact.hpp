@@ -8,7 +8,7 @@
 #include "sim/forces/stencil.hpp"
 #include "sim/model/contact_model.hpp"
 #include "sim/surface/closest.hpp"
-#include "sim/surface/feature_pairs.hpp"
+#include "sim/surface/pair_watch.hpp"
 
 namespace unravel::sim {
 
@@ -27,13 +27,17 @@ struct SurfaceContact {
     std::int32_t solid = -1;  ///< that the cloth touches; −1: cloth
 };
 
+/// What is kept between surfaces within a step, as a share of the thickness.
+inline constexpr double kept_share = 0.1;
+
 /// Memory of contact between surfaces, kept between steps.
 struct SurfaceContactWorkspace {
     std::shared_ptr<const ContactModel> model;  ///< that `tree` is of
     SurfaceTree tree;                           ///< the model's, with the boxes of the last search
     FeaturePairs pairs;                         ///< that can touch while every particle stays in its box
-    std::vector<Box> boxes;                     ///< (particles) of the last search
-    Vec3 ride{0, 0, 0};                         ///< m, motion of all over the step, which the boxes leave out
+    PairWatch watch;                            ///< which of them may do so in a step
+    std::vector<Box> boxes;      ///< (particles) of the last search, less what reaches beyond them
+    std::vector<Vec3> searched;  ///< (particles) where they were then [m]
 
     std::vector<Stencil> stencils;    ///< (contacts) of this step
     std::vector<Vec3> force;          ///< (contacts) on r, at the start [N]
@@ -44,13 +48,10 @@ struct SurfaceContactWorkspace {
     std::vector<std::vector<SurfaceContact>> found;  ///< (chunks of pairs)
 };
 
-/// Finds all pairs that can come within their thickness while particles go from x to `ahead`, and a margin
-/// around that way.
-void search_pairs(const ClothModel& model, std::span<const Vec3> x, std::span<const Vec3> ahead,
-                  SurfaceContactWorkspace& ws);
-
-/// Whether all particles go from x to `end` within their boxes of the last search, so that it missed no pair.
-bool within_search(std::span<const Vec3> x, std::span<const Vec3> end, const SurfaceContactWorkspace& ws);
+/// Puts into ws.watch all pairs that may come within their thickness while particles go straight from x to
+/// `end`. They are searched for again only where a particle leaves the box that the last search allowed it.
+void watch_pairs(const ClothModel& model, std::span<const Vec3> x, std::span<const Vec3> end,
+                 SurfaceContactWorkspace& ws);
 
 /// Forgets the contacts of the last step; and, when those of this one are found, lists them by particle.
 void begin_contacts(SurfaceContactWorkspace& ws);
