@@ -9,6 +9,7 @@
 
 #include "sim/forces/air.hpp"
 #include "sim/forces/bend.hpp"
+#include "sim/forces/curvature.hpp"
 #include "sim/forces/extension.hpp"
 #include "sim/forces/grid_springs.hpp"
 #include "sim/scene/math.hpp"
@@ -74,7 +75,8 @@ struct ClothModel {
     std::vector<double> mass;  ///< (particles) kg: density times the area that is nearer to it than to others
     ExtensionSprings springs;  ///< stretch and shear
     Adjacency spring_adjacency;
-    BendSprings bends;
+    BendSprings bends;  ///< arcs: of bending by buckling alone over two cells, else between neighbours
+    CurvatureStencils curvature;     ///< bending that is linear in curvature; empty: none
     std::vector<GridSprings> grids;  ///< one per cloth that is a grid: its springs by direction
     Stitches stitches;               ///< empty where no mesh has seams
     std::vector<PinnedGroup> pins;
@@ -83,6 +85,7 @@ struct ClothModel {
     std::optional<Wind> wind;                     ///< absent: no air at all
     std::optional<SelfCollision> self_collision;  ///< absent: none; what the scene leaves open is filled in
     Neighbours neighbours;                        ///< of particles of meshes; empty without self-collision
+    std::vector<std::string> notes;               ///< where springs can't do what the scene says
     std::vector<const ForceTerm*> further_terms;  ///< forces besides those of scenes; not owned
     std::size_t size() const { return mass.size(); }
 };
@@ -97,11 +100,13 @@ struct Placement {
 
 /// Builds the model of a checked scene, and where its particles start. Spring constants follow from the
 /// material so that refining a grid refines the same cloth: with cells of a × b metres,
-///   stretch along u: k_s = E_u · (width of the strip it stands for)/a, half a strip along an edge;
+///   stretch along u: k_s = E_u · (width of the strip it stands for)/a, half a strip along an edge, less what
+///   the diagonals of the cells beside it resist (sim/model/moduli.hpp);
 ///   shear: k_s = G (a² + b²)/(a b): a cell in shear has one diagonal in extension, and that one alone gives
-///   G; bend: k_b = B·(width of the strip)/3 along rows, columns and diagonals: on square cells isotropic,
-///   and of bending energy ½ B κ² per area for a cylinder of any direction; c_b so that the push has reached
-///   the arc's own at the material's buckling strain.
+///   G; bend: c = B·(width of the strip)/a³ of particles in a line, 2 B/(a b) of a cell's twist, of energy
+///   ½ B κ² per area for a cylinder of any direction (sim/forces/curvature.hpp); k_b = B·(width of the strip)
+///   of arcs, c_b so that the push has reached the arc's own at the material's buckling strain. By buckling
+///   alone k_b = B·(width)/3 along rows, columns and diagonals over two cells, likewise on square cells.
 /// Damping scales as the stiffness it goes with.
 ClothModel build_model(const Scene& scene, Placement& placement);
 

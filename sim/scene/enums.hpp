@@ -24,6 +24,14 @@ constexpr Words words_of(Wrap) {
     return wrap_words;
 }
 
+/// How cloth resists bending: linearly in its curvature, and as arcs where it buckles between particles; or
+/// by the arcs of Choi & Ko 2002 over two cells alone, as the paper has it.
+enum class BendModel { curvature, buckling };
+inline constexpr std::string_view bend_model_words[] = {"curvature", "buckling"};
+constexpr Words words_of(BendModel) {
+    return bend_model_words;
+}
+
 /// Which way is up in a mesh's file.
 enum class UpAxis { y, z };
 inline constexpr std::string_view up_axis_words[] = {"y", "z"};
@@ -75,8 +83,8 @@ constexpr Words words_of(Preconditioner) {
     return preconditioner_words;
 }
 
-/// How bend springs are treated: as the integrator has it (implicitly by implicit and newton), or explicitly
-/// by all.
+/// How bending is treated: as the integrator has it (implicitly by implicit and newton, by its own κ by the
+/// others), or explicitly by all.
 enum class BendTreatment { scheme, explicit_ };
 inline constexpr std::string_view bend_treatment_words[] = {"scheme", "explicit"};
 constexpr Words words_of(BendTreatment) {
@@ -84,10 +92,10 @@ constexpr Words words_of(BendTreatment) {
 }
 
 /// When a spring that is slack at the start of a step begins to act within it: not before the next step
-/// (start); where the last step's motion carried on would make it taut (predicted); where the solution does,
-/// in a second solve (resolve); or where it is taut at x + h v, at which implicit springs are then linearised
-/// (ahead): the first iteration of Newton's method for backward Euler, begun where the step would end without
-/// forces.
+/// (start); where the last step's motion carried on would make it taut, and, solved again, where the solution
+/// stretches one beyond what may be missed (predicted); wherever the solution makes it taut, in a second solve
+/// (resolve); or where it is taut at x + h v, at which implicit springs are then linearised (ahead): the first
+/// iteration of Newton's method for backward Euler, begun where the step would end without forces.
 enum class Activation { start, predicted, resolve, ahead };
 inline constexpr std::string_view activation_words[] = {"start", "predicted", "resolve", "ahead"};
 constexpr Words words_of(Activation) {

@@ -137,6 +137,7 @@ struct Cloth {
     double jitter = 0;       ///< m, seeded random displacement along the normal at the start
     std::uint32_t seed = 1;  ///< of the jitter
     Material material;
+    BendModel bend_model = BendModel::curvature;
     std::vector<Region> regions;
     std::vector<Pin> pins;
     SourcePlace place;
@@ -198,7 +199,7 @@ struct Solver {
     bool decompose = true;      ///< false: one system over all particles
     BendTreatment bend = BendTreatment::scheme;
     Activation activation = Activation::predicted;
-    double activation_band = 0.02;  ///< springs with l > (1 − band) L get their Jacobian, but no force
+    double activation_band = 0;  ///< springs with l > (1 − band) L get their Jacobian, but no force
     std::optional<AdaptiveStep> adaptive;  ///< absent: every step is `step`
 };
 

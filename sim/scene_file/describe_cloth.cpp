@@ -78,6 +78,11 @@ void describe(Fields& f, Cloth& cloth) {
             [&](Fields& g) { describe(g, cloth.material); });
     if (const MaterialPreset* preset = f.reading() ? find_preset(cloth.material.preset) : nullptr)
         cloth.density = preset->density;
+    f.choice(
+        {"bend_model",
+         "\"curvature\": linear in it, and arcs where cloth buckles between particles; \"buckling\": the "
+         "arcs of Choi & Ko 2002 alone, as in the paper"},
+        cloth.bend_model);
     f.number({"density", "kg/m²; default: the material preset's, else 0.2"}, cloth.density, density_bounds);
     f.choice({"wrap", "\"tube\": closed along u, for sleeves; of grids only", false, grid}, cloth.wrap);
     if (f.sound("particles") && f.sound("wrap") && cloth.wrap == Wrap::tube && cloth.particles[0] < 3)
@@ -121,8 +126,9 @@ void describe(Fields& f, Material& material) {
     if (f.reading() && f.says("preset")) {
         if (const MaterialPreset* preset = find_preset(material.preset)) material = preset->material;
     }
-    f.number_or_pair({"stretch", "N/m, force per width and strain; a number, or [along u, along v]"},
-                     material.stretch, {0, 1e9, false, "N/m"});
+    f.number_or_pair(
+        {"stretch", "N/m, force per width and strain, held in its width; a number, or [along u, along v]"},
+        material.stretch, {0, 1e9, false, "N/m"});
     f.number_or_pair({"stretch_damping", "N·s/m; a number, or [along u, along v]"}, material.stretch_damping,
                      {0, 1e6, false, "N·s/m"});
     f.number({"shear", "N/m, shear modulus times thickness"}, material.shear, {0, 1e9, false, "N/m"});

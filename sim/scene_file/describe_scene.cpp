@@ -46,7 +46,9 @@ void describe(Fields& f, Solver& solver) {
     f.integer({"max_iterations", "of the conjugate gradients, per component"}, solver.max_iterations, 1,
               10'000'000);
     f.flag({"decompose", "solve each component of implicitly coupled particles by itself"}, solver.decompose);
-    f.choice({"bend", "bend springs as the integrator has them (implicit, newton: implicitly), or explicit"},
+    f.choice({"bend",
+              "bending as the integrator has it (implicit, newton: implicitly; others: by its own kappa), or "
+              "explicit"},
              solver.bend);
     f.choice({"activation",
               "when a slack spring acts: next step, where predicted taut, in a second solve, or as "

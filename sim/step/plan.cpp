@@ -53,6 +53,9 @@ void plan_cloths(const ClothModel& model, const StepOptions& options, StepPlan& 
                                 : by_rows || !plan.forces.by_rows
                                     ? plan.forces.because
                                     : fmt::format("{} {}", general->term->name, general->because);
+    const bool bends = std::ranges::any_of(plan.forces.terms, [](const ForcePlan::Term& planned) {
+        return planned.implicit && planned.term == &bending_term;
+    });
     for (const ClothPatch& patch : model.cloths) {
         StepPlan::Cloth& cloth = plan.cloths.emplace_back();
         cloth.name = patch.name;
@@ -61,6 +64,9 @@ void plan_cloths(const ClothModel& model, const StepOptions& options, StepPlan& 
         if (explicit_step) {
             cloth.solver = "none";
             cloth.solver_because = "nothing is implicit";
+        } else if (patch.grid() && bends) {
+            cloth.solver = "rows in double precision";
+            cloth.solver_because = "bending is implicit, which couples by more than a grid's springs";
         } else if (!patch.grid() || !may_use_grids(options.solve)) {
             cloth.solver = "rows in double precision";
             cloth.solver_because = patch.grid() ? "solver.preconditioner or solver.tolerance asks for it"
@@ -88,6 +94,12 @@ StepOptions step_options(const Solver& solver) {
     options.solve = {solver.preconditioner, solver.tolerance, solver.max_iterations};
     options.decompose = solver.decompose;
     return options;
+}
+
+Splitting splitting_of(const StepOptions& options) {
+    Splitting splitting = scheme_of(options.integrator).splitting(options.threshold);
+    if (options.bend == BendTreatment::explicit_) splitting.bend_threshold = always_explicit;
+    return splitting;
 }
 
 const char* way_name(StepPlan::Way way) {
@@ -132,15 +144,13 @@ PlanMemory::Key plan_key(const ClothModel& model, const StepOptions& options, do
 }
 
 ForcePlan plan_forces(const ClothModel& model, const StepOptions& options, double h, bool looks_ahead) {
-    const Scheme& scheme = scheme_of(options.integrator);
     ForcePlan plan;
-    plan.settings = {h, scheme.splitting(options.threshold), options.activation_band,
-                     scheme.implicit_bend && options.bend == BendTreatment::scheme};
+    plan.settings = {h, splitting_of(options), options.activation_band};
     plan.because = why_general(model, options, looks_ahead);
     plan.by_rows = plan.because.empty();
     if (plan.by_rows) plan.because = "every cloth is a grid";
     each_term(model, [&](const ForceTerm& term) {
-        const bool implicit = term.may_be_implicit && term.may_be_implicit(plan.settings);
+        const bool implicit = term.may_be_implicit && term.may_be_implicit(model, plan.settings);
         const bool has_rows = term.part_of_rows || (term.rows && (!implicit || term.rows->splits));
         plan.terms.push_back({&term, plan.by_rows && has_rows, implicit,
                               !plan.by_rows ? plan.because

@@ -11,6 +11,11 @@ namespace {
 
 // Newton's method gives up after this many linearisations; a step that needs more is too large.
 constexpr int newton_limit = 30;
+// Strain that a spring may come to in the step in which it goes taut before it is made to act in that step:
+// what it pulls too late is then a hundredth of what it can bear at most, and most steps have none such.
+constexpr double missed_strain = 0.01;
+// Solves after the first for what was missed: springs that act make others act.
+constexpr int most_solves_again = 4;
 // Halvings of a Newton step that would increase the residual.
 constexpr int newton_halvings = 4;
 
@@ -249,17 +254,23 @@ void predict_taut(const ClothModel& model, std::span<const Vec3> dv, StepWorkspa
     if (ws.plan.forces.by_rows) {
         ws.forces.rows.mark(model, end, ws.forces.taut);
     } else {
-        mark_taut(model.springs, end, {}, ws.forces.taut);
+        mark_taut(model.springs, end, ws.forces.taut);
     }
 }
 
 void solve_again_where_taut(const ClothModel& model, const StepOptions& options, StageTimer& timer,
                             StepWorkspace& ws, StepReport& report) {
-    const std::span<const Vec3> end = predict(ws.linear.dv, ws);
-    if (!mark_taut(model.springs, end, ws.forces.memory.springs, ws.forces.taut)) return;
-    linearise(model, options, timer, ws, report);
-    ws.linear.guess = ws.linear.dv;
-    solve_stage(model, options, ws.linear.guess, timer, ws, report);
+    const bool once = options.activation == Activation::resolve;
+    const ForceSettings& settings = ws.plan.forces.settings;
+    for (int k = 0; k < (once ? 1 : most_solves_again); ++k) {
+        const std::span<const Vec3> end = predict(ws.linear.dv, ws);
+        if (!mark_missed(model.springs, model.mass, settings.h, settings.splitting, end,
+                         ws.forces.memory.springs, once ? 0.0 : missed_strain, ws.forces.taut))
+            return;
+        linearise(model, options, timer, ws, report);
+        ws.linear.guess = ws.linear.dv;
+        solve_stage(model, options, ws.linear.guess, timer, ws, report);
+    }
 }
 
 void iterate(const ClothModel& model, const StepOptions& options, StageTimer& timer, StepWorkspace& ws,

@@ -161,7 +161,7 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     const bool iterates = scheme.iterates || options.energy_limit;
     if (iterates) {
         iterate(model, options, timer, ws, report);
-    } else if (options.activation == Activation::resolve) {
+    } else if (options.activation == Activation::resolve || options.activation == Activation::predicted) {
         solve_again_where_taut(model, options, timer, ws, report);
     }
     require_finite(ws.linear.dv, state, h);

@@ -130,6 +130,7 @@ std::size_t RowForces::bytes() const {
             sum += t.stiffness.bytes() + t.damping.bytes();
         for (const GridTables::Bend& t : cloth.tables.bend)
             sum += t.arc.bytes() + t.slope.bytes() + t.crossing.bytes();
+        for (const RowTable& t : cloth.tables.curvature) sum += t.bytes();
         for (const RowTable& t : cloth.is_explicit) sum += t.bytes();
     }
     return sum;

@@ -40,7 +40,7 @@ const ForceTerm self_collision_term{
     .evaluate = find_and_push_apart,
     .add = add_pairs,
     .couple = couple_pairs,
-    .may_be_implicit = [](const ForceSettings&) { return true; },
+    .may_be_implicit = [](const ClothModel&, const ForceSettings&) { return true; },
     .hides_energy = true,
     .count = count_pairs,
     .time = &StageTimes::collision,

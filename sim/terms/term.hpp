@@ -18,8 +18,7 @@ struct RowVersion;        // sim/terms/row_version.hpp
 struct ForceSettings {
     double h = 0;  ///< s, of the step
     Splitting splitting;
-    double band = 0;                ///< see extension_forces()
-    bool bend_is_implicit = false;  ///< bend springs get their Jacobian (sim/forces/bend.hpp)
+    double band = 0;  ///< see extension_forces()
     friend bool operator==(const ForceSettings&, const ForceSettings&) = default;
 };
 
@@ -68,7 +67,7 @@ struct ForceTerm {
     void (*couple)(const ClothModel& model, const ForcesAt& at, const ForceMemory& memory,
                    StepCouplings& out) = nullptr;
     /// Whether the settings may make some of its springs implicit; null: never.
-    bool (*may_be_implicit)(const ForceSettings& settings) = nullptr;
+    bool (*may_be_implicit)(const ClothModel& model, const ForceSettings& settings) = nullptr;
 
     /// The same force along the rows of grids, which pushes or splits springs; null: a cloth on which it acts
     /// takes the general path.

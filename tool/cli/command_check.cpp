@@ -129,6 +129,7 @@ int check(const CheckOptions& options) {
                                     {"bend_springs_limited", limit.limited}};
         json["meshes"] = meshes_json(scene);
         json["notes"] = scene.notes;
+        for (const std::string& note : simulation.model.notes) json["notes"].push_back(note);
         for (const Effect& e : effects) json["effects"][e.name] = {{"on", e.on}, {"because", e.because}};
         json["plan"] = plan_json(plan);
         fmt::print("{}\n", json.dump(2));
@@ -152,7 +153,8 @@ int check(const CheckOptions& options) {
     for (const auto& [name, words] : plan_words(plan)) fmt::print("  {:<19} {}\n", name, words);
     for (const Effect& e : effects)
         fmt::print("  {:<15} {} because {}\n", e.name, e.on ? "on, " : "off,", e.because);
-    for (const std::string& note : scene.notes) fmt::print("  note: {}\n", note);
+    for (const auto* notes : {&scene.notes, &simulation.model.notes})
+        for (const std::string& note : *notes) fmt::print("  note: {}\n", note);
     if (limit.limited > 0) {
         fmt::print(
             "  note: {} of {} bend springs resist the onset of buckling less than the material would, so "

@@ -20,6 +20,7 @@ void add_bench(CommandLine& line);
 void add_schema(CommandLine& line);
 void add_check(CommandLine& line);
 void add_stability(CommandLine& line);
+void add_verify(CommandLine& line);
 void add_doctor(CommandLine& line);
 void add_describe(CommandLine& line);
 

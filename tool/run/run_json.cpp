@@ -71,7 +71,7 @@ Json run_json(const Scene& scene, const Simulation& simulation, const RunSource&
     json["particles"] = simulation.model.size();
     json["springs"] = {{"stretch", simulation.model.springs.stretch_count},
                        {"shear", simulation.model.springs.size() - simulation.model.springs.stretch_count},
-                       {"bend", simulation.model.bends.size()}};
+                       {"bend", simulation.model.bends.size() + simulation.model.curvature.size()}};
     json["fps"] = scene.clip.fps;
     json["frames"] = source.hashes().size();
     const std::vector<StepReport> reports = source.reports();
