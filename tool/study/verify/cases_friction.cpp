@@ -19,10 +19,11 @@ Simulation on_slope(std::array<int, 2> grid, double steps, double angle, double 
         "[clip]\nduration = 5\nfps = 10\n[cloth]\nparticles = [{}, {}]\nsize = [0.3, 0.3]\ndensity = 0.2\n"
         "center = [{}, {}, 0]\nrotation = [0, 0, {}]\nvelocity = [{}, {}, 0]\n"
         "material = {{ stretch = 500, shear = 50 }}\n"
-        "[[solid]]\nshape = \"plane\"\nrotation = [0, 0, {}]\nfriction = {}\noffset = {}\n[solver]\nstep = "
+        "[[solid]]\nshape = \"plane\"\nrotation = [0, 0, {}]\nfriction = {{ static = {}, kinetic "
+        "= {} }}\noffset = {}\n[solver]\nstep = "
         "\"1/{}\"\n",
         grid[0], grid[1], offset * std::sin(angle), offset * std::cos(angle), -degrees,
-        speed * std::cos(angle), -speed * std::sin(angle), -degrees, friction, offset, steps));
+        speed * std::cos(angle), -speed * std::sin(angle), -degrees, friction, friction, offset, steps));
 }
 
 double way_of(Simulation& simulation, double time) {
@@ -38,14 +39,17 @@ bool slips(std::array<int, 2> grid, double steps, double radius, double friction
     // Density of the last rows: the tape's own weight is small beside theirs.
     const double light = 5.0;
     Simulation simulation = verify_simulation(fmt::format(
-        "[clip]\nduration = 5\nfps = 10\n[cloth]\nparticles = [{}, {}]\nsize = [0.02, {}]\ndensity = 0.02\n"
+        "[clip]\nduration = 5\nfps = 10\n[cloth]\nparticles = [{}, {}]\nsize = [0.02, {}]\ncenter = [0, 1, "
+        "0]\ndensity = 0.02\n"
         "material = {{ stretch = 2000, shear = 20, bend = 1e-7, stretch_damping = 1 }}\n"
         "[[cloth.region]]\nbox = [0, 0, 1, {}]\ndensity = {}\n[[cloth.region]]\nbox = [0, {}, 1, 1]\ndensity "
         "= {}\n"
-        "[[solid]]\nshape = \"cylinder\"\nradius = {}\nheight = 0.2\nrotation = [0, 0, 90]\nfriction = {}\n"
+        "[[solid]]\nshape = \"cylinder\"\nradius = {}\nheight = 0.2\nrotation = [0, 0, 90]\nfriction = {{ "
+        "static = {}, "
+        "kinetic = {} }}\n"
         "[solver]\nstep = \"1/{}\"\n",
-        grid[0], grid[1], length, end, light, 1 - end, light * ratio, radius, friction, steps));
-    // Over the cylinder, whose axis is x.
+        grid[0], grid[1], length, end, light, 1 - end, light * ratio, radius, friction, friction, steps));
+    // From above the cylinder, where the scene has it, to around it. Its axis is x.
     const ClothPatch& patch = simulation.model.cloths[0];
     for (int j = 0; j < patch.particles[1]; ++j) {
         const double s = length * j / patch.cells_v() - 0.5 * length, r = radius + 0.004;

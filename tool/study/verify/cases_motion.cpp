@@ -15,7 +15,7 @@ const std::vector<std::array<int, 2>> flying_sheets{{9, 9}, {17, 9}, {33, 33}};
 
 std::string sheet(std::array<int, 2> grid, double steps, const std::string& cloth, const std::string& rest) {
     return fmt::format(
-        "[clip]\nduration = 5\nfps = 10\n{}[cloth]\nparticles = [{}, {}]\nsize = [0.5, 0.5]\ndensity = "
+        "{}[clip]\nduration = 5\nfps = 10\n[cloth]\nparticles = [{}, {}]\nsize = [0.5, 0.5]\ndensity = "
         "0.2\n{}"
         "\n[solver]\nstep = \"1/{}\"\n",
         rest, grid[0], grid[1], cloth, steps);
