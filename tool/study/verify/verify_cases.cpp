@@ -17,7 +17,7 @@ constexpr std::array cases{
                "plane elasticity; what the keys mean is in docs/scenes.md",
                "moduli of a sheet that is stretched or sheared evenly by 0.001", "N/m",
                "triangles know no shear modulus of their own", verify_moduli},
-    VerifyCase{"strip", "ΔL = ρ g L²/(2 (stretch − 2 shear (a/b)²))", "uniaxial tension, free to narrow",
+    VerifyCase{"strip", "ΔL = ρ g L²/(2 (stretch − 2 shear (b/a)²))", "uniaxial tension, free to narrow",
                "elongation of a hanging strip of 1 m", "mm", "its width is held where it is pinned",
                verify_strip},
     VerifyCase{"catenary", "L = 2 c sinh(d/2c), sag = c (cosh(d/2c) − 1)", "inextensible chain",
