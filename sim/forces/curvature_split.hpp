@@ -39,9 +39,12 @@ inline double curvature_kappa(const CurvatureStencils& stencils, std::span<const
     return h * h * largest / 8;
 }
 
+/// κ up to which explicit treatment is stable (paper Sec. 3.5).
+inline constexpr double stable_kappa = 0.5;
+
 /// Which stencils a step of h seconds treats implicitly, (stencils): those of κ above the splitting's
-/// threshold, or above twice the threshold where no spring of their particles is explicit, too. Springs and
-/// bending together then stay as far within the limit, for h²λ ≤ 16 times the threshold.
+/// threshold, or above twice the threshold where no spring of their particles is explicit, too; and those
+/// that would add up with the springs to more than is stable, unless the threshold itself asks for that.
 std::vector<std::uint8_t> implicit_curvature(const CurvatureStencils& stencils,
                                              const ExtensionSprings& springs, std::span<const double> mass,
                                              double h, const Splitting& splitting);
