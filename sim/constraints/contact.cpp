@@ -52,7 +52,7 @@ bool touches_solid(const Solid& solid, const DeformedSolid* deformed, const Pose
     if (std::abs(touch.gap) < no_gap) touch.gap = 0;
     touch.normal = now.linear() * surface.normal;
     touch.velocity.setZero();
-    if (!solid.motion.empty() || deformed) touch.velocity = (next * surface.carried - view.x[p]) / view.step;
+    if (solid.moves() || deformed) touch.velocity = (next * surface.carried - view.x[p]) / view.step;
     touch.pinched = false;
     // Gravity is foreseen, so that what is laid on a slope is caught before it has begun to slide. Not of
     // what has just let go: the forces on it, gravity among them, pull it off, and catching it again before
@@ -79,7 +79,7 @@ SolidReach reach_of(const Solid& solid, const Pose& now, const Pose& next) {
     reach.next = next.translation();
     reach.normal = now.linear().col(1);
     reach.radius = law_of(solid.shape).reach(solid);
-    reach.plane = solid.shape == Shape::plane && solid.motion.empty();
+    reach.plane = solid.shape == Shape::plane && !solid.moves();
     reach.travel = (reach.next - reach.now).norm();
     // Frobenius' norm of the difference is 2√2 sin(θ/2): more than θ for turns below 2.2, and at most 2√2.
     reach.turn = std::min((next.linear() - now.linear()).norm(), 1.0);

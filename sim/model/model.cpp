@@ -9,6 +9,7 @@
 #include "sim/mesh/placement.hpp"
 #include "sim/model/mesh_links.hpp"
 #include "sim/model/mesh_springs.hpp"
+#include "sim/solids/motion.hpp"
 
 namespace unravel::sim {
 
@@ -135,15 +136,40 @@ void add_bends(const Grid& g, BendSprings& bends, GridSprings& grid) {
 
 void place(const Grid& g, Placement& placement) {
     const Cloth& cloth = g.cloth;
+    const StartPlaces places(cloth);
     for (int j = 0; j < g.nv(); ++j) {
         for (int i = 0; i < g.nu(); ++i) {
-            placement.x.push_back(started_particle(cloth, i, j));
+            placement.x.push_back(places.started(i, j));
             placement.v.push_back(cloth.velocity);
         }
     }
 }
 
-void add_pins(const Grid& g, const Placement& placement, std::vector<PinnedGroup>& groups) {
+// How much nearer to their middle the particles come whose row is drawn together to `width`.
+double gathered_share(const PinnedGroup& group, bool ring, double width) {
+    double length = 0;
+    for (std::size_t k = ring ? 0 : 1; k < group.start.size(); ++k)
+        length += (group.start[k] - group.start[k > 0 ? k - 1 : group.start.size() - 1]).norm();
+    return length > 0 ? width / length : 1;
+}
+
+// What the pin rides and slides on.
+void attach(const Pin& pin, PinnedGroup& group) {
+    group.carried = pin.carried;
+    if (!pin.slide.isZero(0)) group.slide = pin.slide.normalized();
+    if (!pin.carried.by) return;
+    const Solid& body = *pin.carried.by;
+    if (!pin.rod.empty()) {
+        const Pose rod = solid_pose(body, 0);
+        group.slide = rod.linear().col(1);
+        group.rod = rod.translation();
+        group.reach = 0.5 * body.height;
+    }
+    if (carrying_triangle(body, group.centre) < 0) return;
+    for (const Vec3& x : group.start) group.triangles.push_back(carrying_triangle(body, x));
+}
+
+void add_pins(const Grid& g, double begin, const Placement& placement, std::vector<PinnedGroup>& groups) {
     for (const Pin& pin : g.cloth.pins) {
         PinnedGroup group;
         for (const std::size_t index : pinned_particles(g.cloth, pin)) {
@@ -155,6 +181,12 @@ void add_pins(const Grid& g, const Placement& placement, std::vector<PinnedGroup
         group.centre /= static_cast<double>(group.particles.size());
         group.motion = pin.motion;
         group.release = pin.release.value_or(infinity);
+        if (pin.gather) {
+            group.gather = gathered_share(group, g.patch.tube, *pin.gather);
+            group.gather_begin = begin;
+            group.gather_time = pin.gather_time;
+        }
+        attach(pin, group);
         groups.push_back(std::move(group));
     }
 }
@@ -197,6 +229,7 @@ AirCells air_cells(const ClothModel& model) {
 
 ClothModel build_model(const Scene& scene, Placement& placement) {
     ClothModel model;
+    model.begin = -scene.clip.settle;
     model.gravity = scene.gravity;
     model.solids = scene.solids;
     placement = {};
@@ -240,7 +273,7 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
                        : add_mesh_bends(g.cloth, g.patch.first, model.bends);
     }
     for (const Grid& g : grids) place(g, placement);
-    for (const Grid& g : grids) add_pins(g, placement, model.pins);
+    for (const Grid& g : grids) add_pins(g, model.begin, placement, model.pins);
     for (const Grid& g : grids) {
         if (!g.patch.grid()) add_stitches(g.cloth, g.patch, placement, model);
     }

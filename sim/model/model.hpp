@@ -46,6 +46,19 @@ struct PinnedGroup {
     Vec3 centre{0, 0, 0};                  ///< m, what the motion turns about
     Motion motion;
     double release = 0;  ///< s; +∞: never
+    Carried carried;     ///< the body that takes it along, after its own motion
+    /// Drawn together: at `gather_begin` [s] its particles are where they start, `gather_time` [s] later at
+    /// this share of their distance from the centre, and stay there. 1: they are not.
+    double gather = 1, gather_begin = 0, gather_time = 1;
+    Vec3 slide{0, 0, 0};         ///< unit, at the start: the direction in which they are free; zero: in none
+    Vec3 rod{0, 0, 0};           ///< m, at the start: the middle of what they slide on
+    double reach = 0;            ///< m along it from there, beyond which they don't slide; 0: it has no ends
+    std::vector<int> triangles;  ///< (particles) of a body that deforms: what each rides on; empty: of none
+    bool slides() const { return !slide.isZero(0); }
+    /// Whether it takes its particles elsewhere while it holds them.
+    bool moves() const {
+        return !motion.empty() || gather != 1 || !triangles.empty() || (carried.by && carried.by->moves());
+    }
 };
 
 /// Particles near each other along a mesh, which never collide: those of p are sorted in
@@ -78,9 +91,10 @@ struct ClothModel {
     std::vector<GridSprings> grids;  ///< one per cloth that is a grid: its springs by direction
     Stitches stitches;               ///< empty where no mesh has seams
     std::vector<PinnedGroup> pins;
-    Vec3 gravity{0, 0, 0};                        ///< m/s²
-    std::vector<Solid> solids;                    ///< what the cloth meets; empty: no contact at all
-    std::optional<Wind> wind;                     ///< absent: no air at all
+    double begin = 0;           ///< s, when the simulation begins; below 0: it settles first
+    Vec3 gravity{0, 0, 0};      ///< m/s²
+    std::vector<Solid> solids;  ///< what the cloth meets; empty: no contact at all
+    std::optional<Wind> wind;   ///< absent: no air at all
     std::optional<SelfCollision> self_collision;  ///< absent: none; what the scene leaves open is filled in
     Neighbours neighbours;                        ///< of particles of meshes; empty without self-collision
     std::vector<const ForceTerm*> further_terms;  ///< forces besides those of scenes; not owned

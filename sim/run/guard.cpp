@@ -163,7 +163,7 @@ const char* criterion_name(Criterion criterion) {
 }
 
 bool takes_energy(const ClothModel& model) {
-    const auto moves = [](const auto& thing) { return !thing.motion.empty(); };
+    const auto moves = [](const auto& thing) { return thing.moves(); };
     const auto deforms = [](const Solid& solid) { return solid.geometry && solid.geometry->deforms(); };
     return forces_feed(model) || std::any_of(model.pins.begin(), model.pins.end(), moves) ||
            std::any_of(model.solids.begin(), model.solids.end(), moves) ||

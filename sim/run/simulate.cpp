@@ -21,12 +21,30 @@ Simulation start_simulation(const Scene& scene) {
     simulation.steps_per_frame = steps_per_frame(scene);
     simulation.state = initial_state(placement);
     simulation.adaptive = scene.solver.adaptive;
+    simulation.settling = static_cast<std::uint64_t>(
+        std::lround(scene.clip.settle * simulation.fps * simulation.steps_per_frame));
+    if (simulation.settling > 0)
+        simulation.state.t =
+            -static_cast<double>(simulation.settling) / (simulation.fps * simulation.steps_per_frame);
     plan_step(simulation.model, simulation.options, scene.solver.step, simulation.ws);
     simulation.guard = make_guard(simulation.model, simulation.state, scene.solver.step);
     return simulation;
 }
 
+bool settle(Simulation& simulation, const std::function<bool()>& keep_on) {
+    if (simulation.settling == 0) return true;
+    while (simulation.state.whole_steps < simulation.settling) {
+        if (!keep_on()) return false;
+        next_step(simulation);
+    }
+    simulation.settling = 0;
+    simulation.state.whole_steps = 0;
+    simulation.state.t = 0;
+    return true;
+}
+
 void restore(Simulation& simulation, const FrameRecord& record) {
+    simulation.settling = 0;
     simulation.state = record.state;
     simulation.frame = record.frame;
     if (record.reports.empty()) return;
@@ -57,11 +75,13 @@ StepReport next_step(Simulation& simulation) {
     StepReport report = guarded_step(simulation.model, simulation.options, 1.0 / rate, state, simulation.ws,
                                      simulation.guard);
     ++state.whole_steps;
-    report.t = state.t = static_cast<double>(state.whole_steps) / rate;
+    report.t = state.t =
+        (static_cast<double>(state.whole_steps) - static_cast<double>(simulation.settling)) / rate;
     return report;
 }
 
 FrameRecord next_record(Simulation& simulation) {
+    settle(simulation);
     std::vector<StepReport> reports;
     const auto due = static_cast<std::uint64_t>(simulation.frame + 1) * simulation.steps_per_frame;
     while (simulation.state.whole_steps < due) reports.push_back(next_step(simulation));

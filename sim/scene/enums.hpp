@@ -24,6 +24,36 @@ constexpr Words words_of(Wrap) {
     return wrap_words;
 }
 
+/// How a path goes from one keyframe to the next: a monotone cubic that is smooth where such follow each
+/// other (smooth), at even speed (linear), not at all until the next is due (hold), or from rest to rest
+/// (ease).
+enum class Interpolation { smooth, linear, hold, ease };
+inline constexpr std::string_view interpolation_words[] = {"smooth", "linear", "hold", "ease"};
+constexpr Words words_of(Interpolation) {
+    return interpolation_words;
+}
+
+/// Across which axis a mirror stands, at the world's origin.
+enum class Mirror { none, x, y, z };
+inline constexpr std::string_view mirror_words[] = {"none", "x", "y", "z"};
+constexpr Words words_of(Mirror) {
+    return mirror_words;
+}
+
+/// Where a sheet's front looks at the start.
+enum class Facing { up, down, front, back, left, right };
+inline constexpr std::string_view facing_words[] = {"up", "down", "front", "back", "left", "right"};
+constexpr Words words_of(Facing) {
+    return facing_words;
+}
+
+/// Which line a sheet follows at the start.
+enum class StartShape { pleated, folded, rolled, over_bar };
+inline constexpr std::string_view start_shape_words[] = {"pleated", "folded", "rolled", "over-bar"};
+constexpr Words words_of(StartShape) {
+    return start_shape_words;
+}
+
 /// Which way is up in a mesh's file.
 enum class UpAxis { y, z };
 inline constexpr std::string_view up_axis_words[] = {"y", "z"};

@@ -35,11 +35,10 @@ void check_step(const Checking& check) {
                      fmt::format("the step of {} s does not divide a frame of 1/{} s", scene.solver.step,
                                  scene.clip.fps),
                      fmt::format("the nearest that does is \"1/{:.0f}\"", scene.clip.fps * whole));
-    } else if (steps * scene.clip.frames() > max_steps) {
-        check.report(
-            "solver.step",
-            fmt::format("{:.3g} steps in {} frames", steps * scene.clip.frames(), scene.clip.frames()),
-            fmt::format("at most {:.0e} are run", max_steps));
+    } else if (const double frames = scene.clip.frames() + scene.clip.settle * scene.clip.fps;
+               steps * frames > max_steps) {
+        check.report("solver.step", fmt::format("{:.3g} steps in {:.0f} frames", steps * frames, frames),
+                     fmt::format("at most {:.0e} are run", max_steps));
     }
     if (scene.solver.adaptive && check.places.sound("solver.adaptive") &&
         scene.solver.adaptive->smallest > scene.solver.step)

@@ -16,6 +16,13 @@ void describe(Fields&, Region&, const Cloth&);
 /// `names`: where a pin names several corners or edges, all of them; it is read as one pin for each.
 void describe(Fields&, Pin&, std::vector<std::string>& names);
 void describe(Fields&, Keyframe&);
+/// Keyframes under the key `motion`, and how they are interpolated where they don't say it themselves.
+void describe_path(Fields&, const Key& motion, Motion&);
+void describe(Fields&, Start&);
+void describe(Fields&, Wrinkles&);
+void describe(Fields&, Fall&);
+/// Of cloths and solids. The loader replaces them by things of their own, so that it is never written.
+void describe(Fields&, Repeat&);
 /// A mesh's file under the key `file`, and what else is said of it; of a `body` or of cloth.
 void describe(Fields&, MeshFile&, const Key& file, bool body);
 void describe(Fields&, MeshFrames&, bool applies);

@@ -6,6 +6,12 @@ void describe(Fields& f, Scene& scene) {
     f.text({"root", "folder of the files that the scene names, from its own; default: its own", false,
             !f.writing()},
            scene.root, TextKind::path);
+    f.texts(
+        {"include",
+         "scene files whose tables this one takes over: its own keys replace theirs, and lists of cloths, "
+         "solids and cameras are joined, theirs first",
+         false, !f.writing()},
+        scene.include, TextKind::path);
     f.table({"clip", "what is recorded"}, [&](Fields& g) { describe(g, scene.clip); });
     f.vector({"gravity", "m/s², acceleration of free fall; [0, 0, 0] switches it off"}, scene.gravity,
              {-1000, 1000, false, "m/s²"});
@@ -27,6 +33,9 @@ void describe(Fields& f, Scene& scene) {
 void describe(Fields& f, Clip& clip) {
     f.number({"duration", "s"}, clip.duration, {0, max_time, true, "s"});
     f.integer({"fps", "frames per second"}, clip.fps, 1, 1000);
+    f.number({"settle", "s simulated before frame 0 and not shown; what moves stands still meanwhile", false,
+              !f.writing() || clip.settle > 0},
+             clip.settle, time_bounds);
     f.integers({"size", "pixels, width and height; both even where an mp4 is made"}, clip.size, 16, 8192);
 }
 

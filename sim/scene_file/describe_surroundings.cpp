@@ -44,6 +44,9 @@ void describe(Fields& f, Camera& camera) {
     f.number({"orbit", "degrees turned about the target over the clip"}, camera.orbit, rotation_bounds);
     f.list({"keyframes", "position and target over time, instead of `position` and `target`"},
            camera.keyframes, ListForm::inline_tables, in_order<Camera::Key>());
+    f.choice({"interpolation", "between keyframes: smooth, linear, hold (cuts), or ease (from rest to rest)",
+              false, !f.writing() || camera.interpolation != Interpolation::smooth},
+             camera.interpolation);
 }
 
 void describe(Fields& f, Look& look) {

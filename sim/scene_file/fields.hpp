@@ -74,6 +74,8 @@ public:
     virtual bool number_or_table(const Key&, double&, const Bounds&,
                                  const std::function<void(Fields&)>& describe) = 0;
     virtual void text(const Key&, std::string&, TextKind) = 0;
+    /// A text or a list of them.
+    virtual void texts(const Key&, std::vector<std::string>&, TextKind) = 0;
     /// One of some words, kept as text; empty where absent.
     virtual void word(const Key&, std::string&, std::span<const std::string_view> words) = 0;
     /// One of some words or a list of them.

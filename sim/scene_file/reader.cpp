@@ -220,13 +220,12 @@ void Reader::fraction(const Key& key, double& out, const Bounds& bounds) {
 }
 
 void Reader::text(const Key& key, std::string& out, TextKind kind) {
-    const Node* value = take(key);
-    if (!value) return;
-    if (!value->is(Node::Kind::text)) {
-        wrong_kind(key.name, *value, "a text");
-        return;
-    }
-    const std::string& text = value->text;
+    if (const Node* value = take(key)) read_text(key.name, *value, kind, out);
+}
+
+bool Reader::read_text(std::string_view key, const Node& value, TextKind kind, std::string& out) {
+    if (!value.is(Node::Kind::text)) return wrong_kind(key, value, "a text");
+    const std::string& text = value.text;
     std::string_view hint;
     if (kind == TextKind::color && (text.size() != 7 || text[0] != '#' ||
                                     text.find_first_not_of("0123456789abcdefABCDEF", 1) != text.npos))
@@ -234,12 +233,13 @@ void Reader::text(const Key& key, std::string& out, TextKind kind) {
     if (kind == TextKind::name && (text.empty() || text.size() > 64)) hint = "write 1 to 64 characters";
     if (kind == TextKind::path && (text.empty() || text.size() > 1024)) hint = "write 1 to 1024 characters";
     if (printable(text) != text) hint = "it has control characters";
-    if (hint.empty())
+    if (hint.empty()) {
         out = text;
-    else
-        report(key.name, value->place,
-               fmt::format("'{}' can't be \"{}\"", key.name, printable(text.substr(0, 64))),
-               std::string(hint));
+        return true;
+    }
+    report(key, value.place, fmt::format("'{}' can't be \"{}\"", key, printable(text.substr(0, 64))),
+           std::string(hint));
+    return false;
 }
 
 void Reader::word(const Key& key, std::string& out, std::span<const std::string_view> words) {

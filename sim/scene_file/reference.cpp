@@ -82,6 +82,9 @@ public:
         constexpr std::string_view kinds[] = {"1 to 64 characters", "`\"#rrggbb\"`", "file name"};
         row(key, value.empty() ? "absent" : fmt::format("\"{}\"", value), kinds[static_cast<int>(kind)]);
     }
+    void texts(const Key& key, std::vector<std::string>&, TextKind) override {
+        row(key, "absent", "file name, or a list of them");
+    }
     void word(const Key& key, std::string&, std::span<const std::string_view> words) override {
         row(key, "absent", quoted(words));
     }

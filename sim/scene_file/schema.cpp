@@ -77,6 +77,11 @@ public:
         if (kind == TextKind::color) schema["pattern"] = "^#[0-9a-fA-F]{6}$";
         put(key, std::move(schema), value.empty() ? json() : json(value));
     }
+    void texts(const Key& key, std::vector<std::string>&, TextKind) override {
+        const json one{{"type", "string"}, {"minLength", 1}};
+        json list{{"type", "array"}, {"items", one}, {"minItems", 1}, {"maxItems", max_includes}};
+        put(key, {{"anyOf", {one, std::move(list)}}}, nullptr);
+    }
     void word(const Key& key, std::string&, std::span<const std::string_view> words) override {
         put(key, one_of_words(words), nullptr);
     }

@@ -62,6 +62,11 @@ public:
     void text(const Key& key, std::string& value, TextKind) override {
         if (!value.empty()) put(key, toml_text(value));
     }
+    void texts(const Key& key, std::vector<std::string>& values, TextKind) override {
+        std::string list;
+        for (const std::string& value : values) list += (list.empty() ? "" : ", ") + toml_text(value);
+        if (!values.empty()) put(key, "[" + list + "]");
+    }
     void word(const Key& key, std::string& value, std::span<const std::string_view>) override {
         if (!value.empty()) put(key, toml_text(value));
     }

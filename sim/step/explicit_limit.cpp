@@ -76,7 +76,7 @@ ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options
     // What is pinned for good does not swing.
     std::vector<char> held(model.size(), 0);
     for (const PinnedGroup& pin : model.pins) {
-        for (const std::uint32_t p : pin.particles) held[p] = !std::isfinite(pin.release);
+        for (const std::uint32_t p : pin.particles) held[p] = !std::isfinite(pin.release) && !pin.slides();
     }
     std::vector<std::vector<Vec3>> normals(model.cloths.size());
     for (std::size_t c = 0; c < normals.size(); ++c) {

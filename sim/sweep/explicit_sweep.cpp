@@ -81,6 +81,8 @@ std::string why_not_swept(const ClothModel& model) {
         if (why.empty() && !term.rows && !term.part_of_rows)
             why = fmt::format("{} has no version along rows", term.name);
     });
+    if (why.empty() && std::ranges::any_of(model.pins, &PinnedGroup::slides))
+        why = "a pin slides along a line";
     for (const Solid& solid : model.solids) {
         if (why.empty() && solid.shape == Shape::mesh)
             why = fmt::format("the solid {} is a mesh", solid.name);

@@ -10,6 +10,7 @@ namespace unravel::tool {
 // Each adds one command, described and done in the file of its name (command_run.cpp has two).
 void add_run(CommandLine& line);
 void add_simulate(CommandLine& line);
+void add_preview(CommandLine& line);
 void add_render(CommandLine& line);
 void add_sheet(CommandLine& line);
 void add_export(CommandLine& line);

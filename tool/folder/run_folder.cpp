@@ -129,6 +129,19 @@ void refuse_changed_meshes(const RunFolder& folder, const Scene& before, const S
 
 }  // namespace
 
+Existing usual_existing(const RunFolder& folder, const Scene& scene) {
+    const nlohmann::ordered_json run = read_run_json(folder);
+    if (run.contains("status") && run["status"] == "complete") return Existing::refuse;
+    if (!fs::exists(folder.scene())) return fs::exists(folder.cache()) ? Existing::refuse : Existing::resume;
+    try {
+        const std::string before = read_whole_text(folder.scene(), largest_scene);
+        const Scene earlier = parse_scene(before, folder.scene().string(), folder.root);
+        return simulated_part(earlier) == simulated_part(scene) ? Existing::resume : Existing::replace;
+    } catch (const SceneError&) {
+        return Existing::refuse;  // of another version, which may be worth keeping
+    }
+}
+
 std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing existing,
                        const fs::path& textures) {
     const bool there = fs::exists(folder.scene()) || fs::exists(folder.cache());

@@ -45,6 +45,10 @@ public:
 
 enum class Existing { refuse, resume, replace };
 
+/// What to do with what is in a folder where nothing was said: a run that is complete is not touched; one
+/// that is not goes on where it is of the same scene, and makes room where it is not.
+Existing usual_existing(const RunFolder& folder, const Scene& scene);
+
 /// Makes the folder ready for a run of this scene: creates it, removes what a killed run left half-written,
 /// and where a run is there already refuses, goes on from it, or removes it. Going on with a changed scene is
 /// refused with what changed. Pictures that the scene names relative to `textures` are copied along. Returns

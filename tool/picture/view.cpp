@@ -37,7 +37,7 @@ WeavePattern pattern_of(Weave weave) {
 
 // A plane that faces straight up is drawn as the ground.
 bool is_ground(const Solid& solid) {
-    return solid.shape == Shape::plane && solid.motion.empty() &&
+    return solid.shape == Shape::plane && !solid.moves() &&
            (rotation_from_degrees(solid.rotation) * Vec3::UnitY()).y() > 0.9999;
 }
 
@@ -67,15 +67,15 @@ void set_bounds(const Scene& scene, const ClothModel& model, const Placement& pl
         high = high.cwiseMax(point);
     };
     for (const Vec3& x : placement.x) include(x.cast<float>());
-    const auto along = [&](const Motion& motion, auto&& visit) {
+    const auto along = [&](bool moves, auto&& visit) {
         visit(0.0);
-        if (motion.empty()) return;
+        if (!moves) return;
         for (int frame = 1; frame < scene.clip.frames(); ++frame) visit(frame_time(scene, frame));
     };
     for (const Solid& solid : scene.solids) {
         if (solid.shape == Shape::plane) continue;
         const Vec3f r = Vec3f::Constant(static_cast<float>(law_of(solid.shape).reach(solid)));
-        along(solid.motion, [&](double t) {
+        along(solid.moves(), [&](double t) {
             const Vec3f c = solid_pose(solid, t).translation().cast<float>();
             include(c - r);
             include(c + r);
@@ -89,10 +89,11 @@ void set_bounds(const Scene& scene, const ClothModel& model, const Placement& pl
             to = to.cwiseMax(x.cast<float>());
         });
         for (const Pin& pin : scene.cloths[c].pins)
-            along(pin.motion, [&](double t) {
+            along(!pin.motion.empty() || (pin.carried.by && pin.carried.by->moves()), [&](double t) {
                 const Vec3f moved = sample_motion(pin.motion, t).displacement.cast<float>();
-                include(from + moved);
-                include(to + moved);
+                const Eigen::Isometry3f carried = carried_pose(pin.carried, t).cast<float>();
+                include(carried * (from + moved));
+                include(carried * (to + moved));
             });
     }
     // What falls or swings ends on the ground, or nearly.
@@ -264,9 +265,10 @@ void make_exposures(const Scene& scene, const ClothModel& model, const FrameReco
 
 namespace {
 
-// Catmull–Rom through unevenly spaced keys, at rest in the first and the last one.
+// Smooth: Catmull–Rom through unevenly spaced keys, at rest in the first and the last one.
 template <class Value>
-Vec3 through_keys(const std::vector<Camera::Key>& keys, double t, Value&& value) {
+Vec3 through_keys(const std::vector<Camera::Key>& keys, Interpolation interpolation, double t,
+                  Value&& value) {
     const std::size_t last = keys.size() - 1;
     const auto slope = [&](std::size_t k) -> Vec3 {
         if (k == 0 || k == last) return Vec3::Zero();
@@ -277,6 +279,12 @@ Vec3 through_keys(const std::vector<Camera::Key>& keys, double t, Value&& value)
     std::size_t k = 0;
     while (keys[k + 1].time <= t) ++k;
     const double h = keys[k + 1].time - keys[k].time, s = (t - keys[k].time) / h, s2 = s * s, s3 = s2 * s;
+    if (interpolation != Interpolation::smooth) {
+        const double way = interpolation == Interpolation::hold     ? 0
+                           : interpolation == Interpolation::linear ? s
+                                                                    : 3 * s2 - 2 * s3;
+        return value(keys[k]) + way * (value(keys[k + 1]) - value(keys[k]));
+    }
     return (2 * s3 - 3 * s2 + 1) * value(keys[k]) + (s3 - 2 * s2 + s) * h * slope(k) +
            (3 * s2 - 2 * s3) * value(keys[k + 1]) + (s3 - s2) * h * slope(k + 1);
 }
@@ -286,8 +294,9 @@ Vec3 through_keys(const std::vector<Camera::Key>& keys, double t, Value&& value)
 CameraView camera_at(const Scene& scene, const Camera& camera, double t) {
     Vec3 position = camera.position, target = camera.target;
     if (!camera.keyframes.empty()) {
-        position = through_keys(camera.keyframes, t, [](const Camera::Key& key) { return key.position; });
-        target = through_keys(camera.keyframes, t, [](const Camera::Key& key) { return key.target; });
+        const Interpolation by = camera.interpolation;
+        position = through_keys(camera.keyframes, by, t, [](const Camera::Key& key) { return key.position; });
+        target = through_keys(camera.keyframes, by, t, [](const Camera::Key& key) { return key.target; });
     }
     if (camera.orbit != 0) {
         const double angle = camera.orbit * std::numbers::pi / 180.0 * t / scene.clip.duration;

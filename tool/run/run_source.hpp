@@ -36,7 +36,7 @@ public:
     int cached() const { return cached_; }
 
 private:
-    FrameRecord simulate();
+    std::optional<FrameRecord> simulate();
     void take_earlier_times();
 
     const Scene& scene_;

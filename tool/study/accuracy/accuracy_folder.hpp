@@ -31,6 +31,11 @@ public:
     AccuracyStudy read() const;
     /// Makes the folder this scene's: what a study of another has left is removed.
     void begin() const;
+    /// Begins anew: what it holds is of another window.
+    void forget() {
+        holds_study_ = false;
+        begin();
+    }
     void save_reference(const AccuracyReference& reference) const;
     void save_points(const std::vector<AccuracyPoint>& points) const;  ///< all, in accuracy.csv
     void save_point(const AccuracyPoint& point) const;                 ///< one, in its own file
