@@ -64,6 +64,7 @@ def test_a_scene_from_standard_input_a_still_and_a_preview(reference, folder):
         (reference.folder / "frames/textured_0005.png").read_bytes()
     assert not (folder / "still/textured.mp4").exists()
     assert not (folder / "still/cache/frame_0006.state").exists()
+    run(job(folder / "still", "--still", "6", "--set", "cloth.density=0.3"))  # another one, as often as you like
 
     picture = folder / "preview.png"
     told = json.loads(run(["preview", SCENE, "-o", picture, "--device", "software", "--json", "--pictures", "4"]))

@@ -109,7 +109,8 @@ int check(const CheckOptions& options) {
     require_explicit_stability(simulation.model, simulation.options, scene.solver.step);
     const std::vector<Effect> effects = list_effects(scene);
     const std::array<double, 2> memory = estimated_bytes(simulation.model);
-    const long steps = static_cast<long>(simulation.steps_per_frame) * (scene.clip.frames() - 1);
+    const auto settling = static_cast<long>(simulation.settling);
+    const long steps = settling + static_cast<long>(simulation.steps_per_frame) * (scene.clip.frames() - 1);
     const double seconds = static_cast<double>(steps) * step_seconds(scene, simulation.model);
     const double pictures = picture_seconds(scene);
     BendLimit limit;
@@ -122,6 +123,7 @@ int check(const CheckOptions& options) {
                                     {"particles", simulation.model.size()},
                                     {"frames", scene.clip.frames()},
                                     {"steps", steps},
+                                    {"settling_steps", settling},
                                     {"estimated_bytes", memory[0]},
                                     {"estimated_bytes_with_pictures", memory[1]},
                                     {"estimated_seconds", seconds},
@@ -143,8 +145,9 @@ int check(const CheckOptions& options) {
                             const MeshFacts& facts) {
         fmt::print("  {} \"{}\": {}, {}\n", kind, name, file, facts_text(facts));
     });
-    fmt::print("  {} frames at {} per second, {} steps of {} s\n", scene.clip.frames(), scene.clip.fps, steps,
-               scene.solver.step);
+    fmt::print("  {} frames at {} per second, {} steps of {} s{}\n", scene.clip.frames(), scene.clip.fps,
+               steps, scene.solver.step,
+               settling > 0 ? fmt::format(", {} of them before frame 0", settling) : std::string());
     fmt::print(
         "  about {:.0f} MB of memory, {:.0f} with pictures; on one core {} of simulation and {} of "
         "pictures\n",

@@ -13,6 +13,7 @@ void add_simulate(CommandLine& line);
 void add_preview(CommandLine& line);
 void add_render(CommandLine& line);
 void add_sheet(CommandLine& line);
+void add_gallery(CommandLine& line);
 void add_export(CommandLine& line);
 void add_accuracy(CommandLine& line);
 void add_inspect(CommandLine& line);

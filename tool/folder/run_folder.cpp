@@ -130,12 +130,15 @@ void refuse_changed_meshes(const RunFolder& folder, const Scene& before, const S
 }  // namespace
 
 Existing usual_existing(const RunFolder& folder, const Scene& scene) {
-    const nlohmann::ordered_json run = read_run_json(folder);
-    if (run.contains("status") && run["status"] == "complete") return Existing::refuse;
     if (!fs::exists(folder.scene())) return fs::exists(folder.cache()) ? Existing::refuse : Existing::resume;
     try {
         const std::string before = read_whole_text(folder.scene(), largest_scene);
         const Scene earlier = parse_scene(before, folder.scene().string(), folder.root);
+        const nlohmann::ordered_json run = read_run_json(folder);
+        const bool complete = run.contains("status") && run["status"] == "complete";
+        // A still is complete without the frames behind it.
+        const bool whole = run.contains("frames") && run["frames"] == earlier.clip.frames();
+        if (complete && whole) return Existing::refuse;
         return simulated_part(earlier) == simulated_part(scene) ? Existing::resume : Existing::replace;
     } catch (const SceneError&) {
         return Existing::refuse;  // of another version, which may be worth keeping

@@ -45,8 +45,8 @@ public:
 
 enum class Existing { refuse, resume, replace };
 
-/// What to do with what is in a folder where nothing was said: a run that is complete is not touched; one
-/// that is not goes on where it is of the same scene, and makes room where it is not.
+/// What to do with what is in a folder where nothing was said: a run that is complete, with all its frames,
+/// is not touched; one that is not goes on where it is of the same scene, and makes room where it is not.
 Existing usual_existing(const RunFolder& folder, const Scene& scene);
 
 /// Makes the folder ready for a run of this scene: creates it, removes what a killed run left half-written,
