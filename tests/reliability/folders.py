@@ -2,12 +2,13 @@
 
 import json
 import shutil
+import signal
 import struct
 import subprocess
 
 from run_files import check_same, content, video_frames
-from tool_runs import (DONE, FRAMES, INTERRUPTED, OUTPUT, PATIENCE, SCENE, SCENE_ERROR, USAGE, finish, job, run,
-                       start, wait_for_frames)
+from tool_runs import (DONE, FRAMES, OUTPUT, PATIENCE, SCENE, SCENE_ERROR, USAGE, finish, job, run, start, stopped_by,
+                       wait_for_frames)
 
 
 def test_a_changed_scene_is_refused_with_what_changed(reference, folder):
@@ -66,6 +67,15 @@ def test_a_scene_from_standard_input_a_still_and_a_preview(reference, folder):
     assert not (folder / "still/cache/frame_0006.state").exists()
     run(job(folder / "still", "--still", "6", "--set", "cloth.density=0.3"))  # another one, as often as you like
 
+    # A page of runs: each scene's clip, numbers and text, and what is missing is named.
+    page = folder / "gallery.html"
+    assert "unravel run" in run(["gallery", SCENE, "--runs", folder, "-o", page], USAGE)
+    shutil.copytree(reference.folder, folder / "tiny")
+    run(["gallery", SCENE, "--runs", folder, "-o", page])
+    shown = page.read_text()
+    assert shown.count("data:video/mp4;base64,") == 2 and "Small and quick, but with everything" in shown
+    assert "corner = &quot;u0v0&quot;" in shown
+
     picture = folder / "preview.png"
     told = json.loads(run(["preview", SCENE, "-o", picture, "--device", "software", "--json", "--pictures", "4"]))
     assert told["frames"] == [0, 5, 9, 14] and told["particles"] == 121 and picture.stat().st_size > 1000, told
@@ -81,7 +91,7 @@ def test_a_scene_from_standard_input_a_still_and_a_preview(reference, folder):
     assert first["frames"] == second["frames"] == [3]
     assert picture.read_bytes() != before
     watching.terminate()
-    finish(watching, INTERRUPTED)
+    finish(watching, stopped_by(signal.SIGTERM))
 
 
 def test_a_complete_run_resumed_stays_as_it_is(reference, folder):

@@ -201,7 +201,7 @@ public:
             while (!InterruptWatch::requested() && times_of(watched) == times)
                 std::this_thread::sleep_for(watch_period);
         }
-        return exit_interrupted;
+        return InterruptWatch::exit_code();
     }
 
 private:
@@ -244,7 +244,7 @@ int preview(const PreviewOptions& options) {
     Previewer previewer(options);
     if (options.watch) return previewer.watch();
     previewer.make();
-    return InterruptWatch::requested() ? exit_interrupted : exit_done;
+    return InterruptWatch::requested() ? InterruptWatch::exit_code() : exit_done;
 }
 
 }  // namespace
