@@ -100,6 +100,20 @@ constexpr Words words_of(Weave) {
     return weave_words;
 }
 
+/// How a solid's surface takes the light.
+enum class Finish { satin, matt, gloss, metal };
+inline constexpr std::string_view finish_words[] = {"satin", "matt", "gloss", "metal"};
+constexpr Words words_of(Finish) {
+    return finish_words;
+}
+
+/// What the component view is drawn on: a screen, or a page.
+enum class Theme { dark, paper };
+inline constexpr std::string_view theme_words[] = {"dark", "paper"};
+constexpr Words words_of(Theme) {
+    return theme_words;
+}
+
 /// What the colours of the component view tell.
 enum class Show { components, splitting, strain, velocity, contact };
 inline constexpr std::string_view show_words[] = {"components", "splitting", "strain", "velocity", "contact"};

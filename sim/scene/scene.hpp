@@ -243,6 +243,10 @@ struct Camera {
         Vec3 position{0, 0, 0}, target{0, 0, 0};
     };
     std::vector<Key> keyframes;
+    std::string follow;   ///< name of a solid or cloth that position and target go along with; empty: none
+    bool fit = false;     ///< goes back or forth along its line of sight until the scene fills the picture
+    double aperture = 0;  ///< m, across the lens; 0: all is sharp. Drawn at final quality only
+    std::optional<double> focus;  ///< m, distance of what is sharp; absent: the target's
 };
 
 struct ClothLook {
@@ -253,15 +257,47 @@ struct ClothLook {
     std::string texture;  ///< PNG file beside the scene; empty: the weave
 };
 
+struct BodyLook {
+    Finish finish = Finish::satin;
+    std::string texture;  ///< PNG file beside the scene, laid on from three sides; empty: none
+    double scale = 0.5;   ///< m of the surface that the picture spans
+};
+
+/// The lamp that casts shadows with edges.
+struct Sun {
+    Vec3 direction{-0.35, 0.8, 0.5};  ///< towards it; need not be unit
+    std::string color;                ///< empty: a warm white
+    double strength = 1;              ///< of the usual
+    std::optional<double> softness;   ///< degrees that it is across; absent: 5.7
+};
+
+/// Light from all around.
+struct Sky {
+    std::string color;    ///< empty: a cool white with a share of the background
+    double strength = 1;  ///< of the usual
+    std::string image;    ///< PNG file beside the scene, all directions on twice as wide as high; empty: none
+    bool show = false;    ///< the image is also the background
+};
+
 struct Look {
     std::vector<ClothLook> cloth;  ///< one per cloth; the last serves the rest
+    std::vector<BodyLook> body;    ///< one per solid; the last serves the rest
+    Sun sun;
+    Sky sky;
+    double exposure = 0;  ///< stops: each doubles all light
     std::string background = "#d8dee6";
+    std::string background_top;    ///< of a gradient from `background` at the bottom; empty: one colour
+    std::string background_image;  ///< PNG file beside the scene that fills the picture; empty: none
     std::string ground = "#8d9096";
+    std::string ground_texture;  ///< PNG file beside the scene, repeated; empty: one colour
+    double ground_scale = 1;     ///< m of the ground that the picture spans
+    bool horizon = false;        ///< the ground goes on to the horizon, not only to a little beyond the scene
     std::string solid = "#c9b79c";
     bool show_ground = true;
     std::optional<double> ground_height;  ///< m; absent: under the lowest plane or a little under everything
     Show show = Show::components;
-    double show_max = 0;       ///< where the scale of strain (1) or velocity [m/s] ends; 0: 0.05, 3
+    double show_max = 0;  ///< where the scale of strain (1) or velocity [m/s] ends; 0: by the clip
+    Theme theme = Theme::dark;
     bool legend = false;       ///< tell in the picture what its colours mean
     bool transparent = false;  ///< no ground, no background: frames with an alpha channel
     int subdivide = -1;  ///< times that each cell is drawn as four smooth ones; −1: as a coarse grid needs it

@@ -2,9 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/scene/limits.hpp"
+#include "sim/scene_file/look_pictures.hpp"
 #include "sim/solids/shape.hpp"
 
 namespace unravel::sim {
@@ -152,6 +154,49 @@ ContainedFile contained_file(const std::filesystem::path& folder, const std::str
     return {std::move(file), {}, {}};
 }
 
+namespace {
+
+void check_follow(const Checking& check, std::size_t camera) {
+    const Scene& scene = check.scene;
+    const std::string& followed = scene.cameras[camera].follow;
+    if (followed.empty()) return;
+    if (scene.cameras[camera].fit)
+        check.report(fmt::format("camera[{}].fit", camera),
+                     "a camera that is fitted to the scene follows nothing", "leave out fit or follow");
+    std::string there;
+    const auto add = [&](const auto& things) {
+        for (const auto& thing : things)
+            if (!thing.name.empty()) there += fmt::format("{}\"{}\"", there.empty() ? "" : ", ", thing.name);
+    };
+    add(scene.solids);
+    add(scene.cloths);
+    const auto names = [&](const auto& thing) { return thing.name == followed; };
+    if (std::ranges::any_of(scene.solids, names) || std::ranges::any_of(scene.cloths, names)) return;
+    check.report(fmt::format("camera[{}].follow", camera),
+                 fmt::format("there is no solid or cloth named \"{}\"", followed),
+                 there.empty() ? "give one of them a name" : "there is " + there);
+}
+
+void check_light(const Checking& check) {
+    const Look& look = check.scene.look;
+    if (check.places.sound("look.sun.direction") && look.sun.direction.norm() < 1e-9)
+        check.report("look.sun.direction", "a sun that stands nowhere",
+                     "write the direction towards it, such as [-0.35, 0.8, 0.5]");
+    if (look.sky.show && look.sky.image.empty())
+        check.report("look.sky.show", "a sky without an image is not to be shown",
+                     "name one by image = \"sky.png\"");
+}
+
+// Every picture that the scene names is to lie in its folder.
+void check_pictures(const Checking& check) {
+    for (const auto& [key, file] : look_pictures(check.scene.look)) {
+        const ContainedFile found = contained_file(check.scene.home, file, "texture");
+        if (!found.what.empty()) check.report(key, found.what, found.hint);
+    }
+}
+
+}  // namespace
+
 void check_looks(const Checking& check) {
     for (std::size_t i = 0; i < check.scene.cameras.size(); ++i) {
         const Camera& camera = check.scene.cameras[i];
@@ -166,14 +211,9 @@ void check_looks(const Checking& check) {
                       camera.keyframes[k].target);
     }
     check_names(check, check.scene.cameras, "camera");
-
-    for (std::size_t i = 0; i < check.scene.look.cloth.size(); ++i) {
-        const std::string& texture = check.scene.look.cloth[i].texture;
-        if (texture.empty()) continue;
-        const std::string path = fmt::format("look.cloth[{}].texture", i);
-        const ContainedFile found = contained_file(check.scene.home, texture, "texture");
-        if (!found.what.empty()) check.report(path, found.what, found.hint);
-    }
+    for (std::size_t i = 0; i < check.scene.cameras.size(); ++i) check_follow(check, i);
+    check_light(check);
+    check_pictures(check);
 }
 
 }  // namespace unravel::sim

@@ -27,6 +27,9 @@ void describe(Fields&, Camera&);
 void describe(Fields&, Camera::Key&);
 void describe(Fields&, Look&);
 void describe(Fields&, ClothLook&);
+void describe(Fields&, BodyLook&);
+void describe(Fields&, Sun&);
+void describe(Fields&, Sky&);
 
 /// Describes keyframes one after the other and reports one that is not later than the one before.
 template <class Key>

@@ -73,14 +73,14 @@ FrameStage measure_simulation(Work& work) {
     return watch.read("simulate", work.frames);
 }
 
-FrameStage measure_drawings(Work& work, const ClothModel& model) {
+FrameStage measure_drawings(Work& work, const ClothModel& model, const DrawScene& drawn) {
     const auto edges = drawn_edges(model);
     ComponentColors colors;
     work.drawings.resize(work.records.size());
     const Stopwatch watch;
     for (std::size_t k = 0; k < work.records.size(); ++k)
-        make_draw_frame(work.scene, model, work.records[k], colors.assign(work.records[k].component, edges),
-                        work.drawings[k]);
+        make_draw_frame(work.scene, model, drawn, work.records[k],
+                        colors.assign(work.records[k].component, edges), work.drawings[k]);
     return watch.read("colours and shapes", work.frames);
 }
 
@@ -166,9 +166,9 @@ FrameBench bench_frames(const Scene& scene, int frames, int threads, const Devic
     Placement placement;
     const ClothModel model = build_model(scene, placement);
     bench.stages.push_back(measure_simulation(work));
-    bench.stages.push_back(measure_drawings(work, model));
+    const DrawScene drawn = make_draw_scene(scene, model, placement);
+    bench.stages.push_back(measure_drawings(work, model, drawn));
     {
-        const DrawScene drawn = make_draw_scene(scene, model, placement);
         const GlContext context(device);
         Renderer renderer(context, drawn, {scene.clip.size[0], scene.clip.size[1], ClipOptions{}.samples, 1});
         bench.renderer = renderer.description();

@@ -14,6 +14,7 @@
 #include "sim/run/frame_record.hpp"
 #include "sim/scene/limits.hpp"
 #include "sim/scene_file/load.hpp"
+#include "sim/scene_file/look_pictures.hpp"
 #include "tool/base/version.hpp"
 #include "tool/folder/clip_view.hpp"
 
@@ -84,7 +85,7 @@ namespace {
 
 std::vector<std::string> named_files(const Scene& scene) {
     std::vector<std::string> names;
-    for (const ClothLook& look : scene.look.cloth) names.push_back(look.texture);
+    for (const NamedPicture& picture : look_pictures(scene.look)) names.push_back(picture.file);
     for (const Cloth& cloth : scene.cloths) names.push_back(cloth.mesh.file);
     for (const Solid& solid : scene.solids) {
         names.push_back(solid.mesh.file);

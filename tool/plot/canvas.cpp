@@ -1,5 +1,6 @@
 #include "tool/plot/canvas.hpp"
 
+#include <cairo-pdf.h>
 #include <cairo-svg.h>
 
 #include <algorithm>
@@ -169,6 +170,17 @@ std::string canvas_svg(int width, int height, const std::function<void(Canvas&)>
         require(cairo_surface_status(surface.get()));
     }
     return with_own_names(svg);
+}
+
+std::string canvas_pdf(int width, int height, const std::function<void(Canvas&)>& draw) {
+    std::string pdf;
+    const Surface surface(cairo_pdf_surface_create_for_stream(append, &pdf, width, height));
+    // The same figure is to be the same bytes.
+    cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
+    draw_on(surface.get(), 1, draw);
+    cairo_surface_finish(surface.get());
+    require(cairo_surface_status(surface.get()));
+    return pdf;
 }
 
 Image canvas_image(int width, int height, double scale, const std::function<void(Canvas&)>& draw) {

@@ -96,7 +96,7 @@ void write_accuracy_video(const Scene& studied, const AccuracySide& cheap, const
             record.state.x = side == 0 ? near : exact;
             for (std::size_t p = 0; p < model.size(); ++p)
                 colors[p] = side == 0 ? heat_color((near[p] - exact[p]).norm(), worst) : exact_color;
-            make_draw_frame(scene, model, record, colors, frame);
+            make_draw_frame(scene, model, drawn, record, colors, frame);
             renderer.draw(DrawStyle::components, frame, pictures[static_cast<std::size_t>(side)]);
         }
         const Image picture = canvas_image(settings.width, settings.height, 1, [&](Canvas& canvas) {
