@@ -25,8 +25,8 @@ struct SpringRows {
 ///   anti      (i+1, j) — (i, j+1)      bend_anti      (i+2, j) — (i, j+2)
 ///
 /// The lists keep i < j for every spring. So in a tube the springs along u that close the ring (the last of
-/// each row of u, the last two of bend_u) are stored from `to` to `from`; all others as drawn. Bend springs
-/// are either there for the whole cloth, some perhaps of zero stiffness, or not at all.
+/// each row of u, the last two of bend_u) are stored from `to` to `from`; all others as drawn. Shear and
+/// bend springs are either there for the whole cloth, some perhaps of zero stiffness, or not at all.
 struct GridSprings {
     std::uint32_t particle = 0;    ///< the grid's first; particle (i, j) is particle + j·nu + i
     std::uint32_t nu = 0, nv = 0;  ///< particles along u and v

@@ -97,7 +97,15 @@ void add_stretch(const Grid& g, ExtensionSprings& springs, GridSprings& grid) {
     grid.v = add_rows(g, springs.size(), {g.nu(), g.patch.cells_v()}, {0, 0}, {0, 1}, along(1));
 }
 
+bool resists_shear(const Material& m) {
+    return m.shear > 0 || m.shear_damping > 0;
+}
+
 void add_shear(const Grid& g, ExtensionSprings& springs, GridSprings& grid) {
+    if (!resists_shear(g.cloth.material) &&
+        std::none_of(g.cloth.regions.begin(), g.cloth.regions.end(),
+                     [](const Region& region) { return region.material && resists_shear(*region.material); }))
+        return;
     const double diagonal = std::hypot(g.a, g.b), shape = diagonal * diagonal / (g.a * g.b);
     const std::array<int, 2> cells{g.patch.cells_u(), g.patch.cells_v()};
     const auto across = [&](int i, int j, std::uint32_t p, std::uint32_t q) {

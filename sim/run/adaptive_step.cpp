@@ -29,7 +29,7 @@ double excess(const AdaptiveStep& settings, const StepReport& report, const Clot
 
 }  // namespace
 
-StepReport adaptive_step(Simulation& simulation, const AdaptiveStep& settings, int rate) {
+StepReport adaptive_step(Simulation& simulation, const AdaptiveStep& settings, double rate) {
     ClothState& state = simulation.state;
     const int deepest = std::clamp(
         static_cast<int>(std::floor(std::log2(1.0 / (rate * settings.smallest)) + 1e-9)), 0, most_halvings);

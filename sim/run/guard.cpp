@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/forces/extension_law.hpp"
 #include "sim/mesh/mesh_solid.hpp"
 #include "sim/step/trace.hpp"
 
@@ -70,6 +71,23 @@ std::string particle_name(const ClothModel& model, std::uint32_t p) {
     return where + (model.cloths.size() > 1 ? fmt::format(" of cloth {})", c) : std::string(")"));
 }
 
+// A solve ends at a share of what all springs pull together. Where some pull so much harder than a particle's
+// own inertia, κ of Eq. (7), that share moves the others about; hard damping is seen to do so from here on.
+constexpr double tolerable_kappa = 1e3;
+
+// The tolerance that the hardest springs ask for, in words, where the scene's is looser; else empty.
+std::string finer_solves(const ClothModel& model, const StepOptions& options, double h) {
+    const ExtensionSprings& springs = model.springs;
+    double hardest = 0;
+    for (std::uint32_t s = 0; s < springs.size(); ++s)
+        hardest = std::max(hardest, kappa_between(h, model.mass[springs.i[s]], model.mass[springs.j[s]],
+                                                  springs.stiffness[s], springs.damping[s]));
+    const double wanted = tolerable_kappa / hardest;
+    if (options.integrator == Integrator::explicit_ || options.solve.tolerance <= wanted) return "";
+    return fmt::format("lower solver.tolerance to {:.0e} (now {}), or soften what is stiffest or damped most",
+                       0.01 * wanted, options.solve.tolerance);
+}
+
 struct Judgement {
     const ClothModel& model;
     const StepOptions& options;
@@ -79,7 +97,9 @@ struct Judgement {
 
     [[noreturn]] void stop(Criterion criterion, const std::string& what) {
         failure.criterion = criterion;
-        failure.advice = advice_for(criterion, options, h);
+        const std::string finer =
+            criterion == Criterion::unsolved ? std::string() : finer_solves(model, options, h);
+        failure.advice = finer.empty() ? advice_for(criterion, options, h) : finer;
         throw SimulationError(fmt::format("step {} (from {:.6g} s, {:.6g} s long): {}; {}", failure.step,
                                           failure.t, h, what, failure.advice),
                               failure);

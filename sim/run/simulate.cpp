@@ -9,7 +9,7 @@
 namespace unravel::sim {
 
 int steps_per_frame(const Scene& scene) {
-    return static_cast<int>(std::lround(1.0 / (scene.clip.fps * scene.solver.step)));
+    return static_cast<int>(std::lround(1.0 / (scene.clip.fps.per_second() * scene.solver.step)));
 }
 
 Simulation start_simulation(const Scene& scene) {
@@ -51,7 +51,7 @@ FrameRecord present_record(const Simulation& simulation) {
 }
 
 StepReport next_step(Simulation& simulation) {
-    const int rate = simulation.fps * simulation.steps_per_frame;
+    const double rate = simulation.fps.per_second() * simulation.steps_per_frame;
     ClothState& state = simulation.state;
     if (simulation.adaptive) return adaptive_step(simulation, *simulation.adaptive, rate);
     StepReport report = guarded_step(simulation.model, simulation.options, 1.0 / rate, state, simulation.ws,

@@ -14,7 +14,7 @@ namespace unravel::sim {
 struct Simulation {
     ClothModel model;
     StepOptions options;
-    int fps = 30;
+    Rate fps;
     int steps_per_frame = 1;               ///< the largest steps, where the step is adaptive
     std::optional<AdaptiveStep> adaptive;  ///< absent: every step is 1/(fps·steps_per_frame)
     ClothState state;
@@ -37,7 +37,7 @@ FrameRecord present_record(const Simulation& simulation);
 StepReport next_step(Simulation& simulation);
 
 /// Steps to the next frame. Frame k is reached at exactly k/fps: time is counted in steps, not summed. Throws
-/// SimulationError, after which the simulation stands where the failing step began.
+/// SimulationError, after which the simulation stands where the failing step began, and Stopped.
 FrameRecord next_record(Simulation& simulation);
 
 /// Steps of a frame for a step size that divides it (checked when the scene is loaded).

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "sim/scene/enums.hpp"
+#include "sim/scene/rate.hpp"
 
 namespace unravel::sim {
 
@@ -34,9 +35,9 @@ struct SourcePlace {
 
 struct Clip {
     double duration = 3.0;  ///< s; frames 0 … round(duration·fps), frame k due at exactly k/fps
-    int fps = 30;           ///< frames per second
-    std::array<int, 2> size{1280, 720};  ///< pixels, both even (4:2:0 video)
-    int frames() const { return static_cast<int>(duration * fps + 0.5) + 1; }
+    Rate fps;
+    std::array<int, 2> size{1280, 720};  ///< pixels; both even where an mp4 is made
+    int frames() const { return static_cast<int>(duration * fps.per_second() + 0.5) + 1; }
 };
 
 /// Elastic constants of a cloth as a continuum, so that refining the grid refines the same cloth.

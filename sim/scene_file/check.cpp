@@ -28,13 +28,14 @@ void check_names(const Checking& check, const std::vector<T>& things, std::strin
 /// The frame is the whole number of steps nearest to what the scene says.
 void check_step(const Checking& check) {
     const Scene& scene = check.scene;
-    const double steps = 1 / (scene.clip.fps * scene.solver.step);
+    const double steps = 1 / (scene.clip.fps.per_second() * scene.solver.step);
     const double whole = std::max(1.0, std::round(steps));
     if (std::abs(steps - whole) > step_slack * whole) {
         check.report("solver.step",
-                     fmt::format("the step of {} s does not divide a frame of 1/{} s", scene.solver.step,
-                                 scene.clip.fps),
-                     fmt::format("the nearest that does is \"1/{:.0f}\"", scene.clip.fps * whole));
+                     fmt::format("the step of {} s does not divide a frame of {} s", scene.solver.step,
+                                 step_text(scene.clip.fps, 1)),
+                     fmt::format("the nearest that does is \"{}\"",
+                                 step_text(scene.clip.fps, static_cast<long long>(whole))));
     } else if (steps * scene.clip.frames() > max_steps) {
         check.report(
             "solver.step",
@@ -54,14 +55,15 @@ void check_step(const Checking& check) {
 void check_clip(const Checking& check) {
     const Clip& clip = check.scene.clip;
     if (!check.places.sound("clip.duration") || !check.places.sound("clip.fps")) return;
-    if (clip.duration * clip.fps < 0.5) {
-        check.report(
-            "clip.duration", fmt::format("a clip of {} s is shorter than a frame", clip.duration),
-            fmt::format("at {} frames per second it takes {:.4g} s or more", clip.fps, 1.0 / clip.fps));
+    const double frames = clip.duration * clip.fps.per_second();
+    if (frames < 0.5) {
+        check.report("clip.duration", fmt::format("a clip of {} s is shorter than a frame", clip.duration),
+                     fmt::format("at {} frames per second it takes {:.4g} s or more", rate_text(clip.fps),
+                                 clip.fps.time_of(1)));
         return;
     }
-    if (clip.duration * clip.fps > max_frames) {
-        check.report("clip.duration", fmt::format("a clip of {:.0f} frames", clip.duration * clip.fps),
+    if (frames > max_frames) {
+        check.report("clip.duration", fmt::format("a clip of {:.0f} frames", frames),
                      fmt::format("at most {} are made", max_frames));
         return;
     }

@@ -125,7 +125,10 @@ void describe(Fields& f, Material& material) {
                      material.stretch, {0, 1e9, false, "N/m"});
     f.number_or_pair({"stretch_damping", "N·s/m; a number, or [along u, along v]"}, material.stretch_damping,
                      {0, 1e6, false, "N·s/m"});
-    f.number({"shear", "N/m, shear modulus times thickness"}, material.shear, {0, 1e9, false, "N/m"});
+    f.number({"shear", "N/m, shear modulus times thickness; 0: no shear springs at all"}, material.shear,
+             {0, 1e9, false, "N/m"});
+    // What has no stiffness is not damped by default either.
+    if (f.reading() && f.says("shear") && material.shear == 0) material.shear_damping = 0;
     f.number({"shear_damping", "N·s/m"}, material.shear_damping, {0, 1e6, false, "N·s/m"});
     f.number({"bend", "N·m, bending stiffness per width"}, material.bend, {0, 100, false, "N·m"});
     f.number({"buckling_strain", "compression from which a strip pushes as a buckled arc"},

@@ -26,7 +26,8 @@ void describe(Fields& f, Scene& scene) {
 
 void describe(Fields& f, Clip& clip) {
     f.number({"duration", "s"}, clip.duration, {0, max_time, true, "s"});
-    f.integer({"fps", "frames per second"}, clip.fps, 1, 1000);
+    f.rate({"fps", "frames per second; a whole number or a fraction such as \"30000/1001\""}, clip.fps, 1,
+           1000);
     f.integers({"size", "pixels, width and height; both even where an mp4 is made"}, clip.size, 16, 8192);
 }
 

@@ -61,6 +61,8 @@ public:
 
     virtual void flag(const Key&, bool&) = 0;
     virtual void integer(const Key&, int&, int low, int high) = 0;
+    /// A whole number, or a text "a/b" of two whole numbers; low and high bound the quotient.
+    virtual void rate(const Key&, Rate&, int low, int high) = 0;
     virtual void integers(const Key&, std::span<int>, int low, int high) = 0;
     virtual void seed(const Key&, std::uint32_t&) = 0;
     virtual void number(const Key&, double&, const Bounds&) = 0;

@@ -56,9 +56,9 @@ void complete(Scene& scene, bool says_step) {
     complete_names(scene.cloths, [](const Cloth&) { return std::string_view("cloth"); });
     complete_names(scene.solids, [](const Solid& solid) { return word_of(solid.shape); });
     complete_names(scene.cameras, [](const Camera&) { return std::string_view("camera"); });
-    const double steps = 1 / (scene.clip.fps * scene.solver.step);
+    const double steps = 1 / (scene.clip.fps.per_second() * scene.solver.step);
     const double per_frame = says_step ? std::round(steps) : std::ceil(steps * (1 - step_slack));
-    scene.solver.step = 1 / (scene.clip.fps * per_frame);
+    scene.solver.step = 1 / (scene.clip.fps.per_second() * per_frame);
 }
 
 }  // namespace

@@ -193,6 +193,47 @@ void Reader::optional_number(const Key& key, std::optional<double>& out, const B
     if (const Node* value = take(key); value && read_number(key.name, *value, bounds, number)) out = number;
 }
 
+namespace {
+
+// "a/b" of two whole numbers above zero.
+bool parse_quotient(const std::string& text, int& above, int& below) {
+    const char* end = text.data() + text.size();
+    const auto [slash, bad_above] = std::from_chars(text.data(), end, above);
+    if (bad_above != std::errc() || slash == end || *slash != '/') return false;
+    const auto [rest, bad_below] = std::from_chars(slash + 1, end, below);
+    return bad_below == std::errc() && rest == end && above > 0 && below > 0;
+}
+
+}  // namespace
+
+void Reader::rate(const Key& key, Rate& out, int low, int high) {
+    const Node* value = take(key);
+    if (!value) return;
+    const std::string_view hint = "write a whole number or a fraction of two such as \"30000/1001\"";
+    if (value->is(Node::Kind::text)) {
+        int above = 0, below = 0;
+        if (!parse_quotient(value->text, above, below)) {
+            report(key.name, value->place,
+                   fmt::format("'{}' can't be \"{}\"", key.name, printable(value->text.substr(0, 64))),
+                   std::string(hint));
+        } else if (above < static_cast<double>(low) * below || above > static_cast<double>(high) * below) {
+            report(key.name, value->place, fmt::format("'{}' is {}/{}", key.name, above, below),
+                   fmt::format("it must be from {} to {}", low, high));
+        } else {
+            out = Rate(above, below);
+        }
+        return;
+    }
+    if (value->is(Node::Kind::number)) {
+        report(key.name, value->place,
+               fmt::format("'{}' is no exact number of frames as {}", key.name, value->number),
+               std::string(hint));
+        return;
+    }
+    std::int64_t number = 0;
+    if (read_integer(key.name, *value, low, high, number)) out = static_cast<int>(number);
+}
+
 void Reader::fraction(const Key& key, double& out, const Bounds& bounds) {
     const Node* value = take(key);
     if (!value) return;
@@ -200,22 +241,16 @@ void Reader::fraction(const Key& key, double& out, const Bounds& bounds) {
         read_number(key.name, *value, bounds, out);
         return;
     }
-    const std::string& text = value->text;
     int above = 0, below = 0;
-    const char* end = text.data() + text.size();
-    const auto [slash, bad_above] = std::from_chars(text.data(), end, above);
-    if (bad_above == std::errc() && slash != end && *slash == '/') {
-        const auto [rest, bad_below] = std::from_chars(slash + 1, end, below);
-        if (bad_below == std::errc() && rest == end && above > 0 && below > 0) {
-            Node quotient = *value;
-            quotient.kind = Node::Kind::number;
-            quotient.number = static_cast<double>(above) / below;
-            read_number(key.name, quotient, bounds, out);
-            return;
-        }
+    if (parse_quotient(value->text, above, below)) {
+        Node quotient = *value;
+        quotient.kind = Node::Kind::number;
+        quotient.number = static_cast<double>(above) / below;
+        read_number(key.name, quotient, bounds, out);
+        return;
     }
     report(key.name, value->place,
-           fmt::format("'{}' can't be \"{}\"", key.name, printable(text.substr(0, 64))),
+           fmt::format("'{}' can't be \"{}\"", key.name, printable(value->text.substr(0, 64))),
            "write a number or a fraction of whole numbers such as \"1/240\"");
 }
 

@@ -40,6 +40,7 @@ public:
     void numbers(const Key&, std::span<double>, const Bounds&) override;
     void number_or_pair(const Key&, std::array<double, 2>&, const Bounds&) override;
     void fraction(const Key&, double&, const Bounds&) override;
+    void rate(const Key&, Rate&, int low, int high) override;
     bool number_or_table(const Key&, double&, const Bounds&,
                          const std::function<void(Fields&)>& describe) override;
     void text(const Key&, std::string&, TextKind) override;

@@ -49,6 +49,9 @@ public:
     void integer(const Key& key, int& value, int low, int high) override {
         row(key, fmt::format("{}", value), fmt::format("{} to {}", low, high));
     }
+    void rate(const Key& key, Rate& value, int low, int high) override {
+        row(key, rate_text(value), fmt::format("{} to {}", low, high));
+    }
     void integers(const Key& key, std::span<int> values, int low, int high) override {
         row(key, fmt::format("[{}]", fmt::join(values, ", ")),
             fmt::format("{} of {} to {}", values.size(), low, high));

@@ -44,6 +44,13 @@ public:
     void integer(const Key& key, int& value, int low, int high) override {
         put(key, {{"type", "integer"}, {"minimum", low}, {"maximum", high}}, value);
     }
+    void rate(const Key& key, Rate& value, int low, int high) override {
+        put(key,
+            {{"anyOf",
+              {{{"type", "integer"}, {"minimum", low}, {"maximum", high}},
+               {{"type", "string"}, {"pattern", "^[1-9][0-9]*/[1-9][0-9]*$"}}}}},
+            value.num);
+    }
     void integers(const Key& key, std::span<int> values, int low, int high) override {
         json item{{"type", "integer"}, {"minimum", low}, {"maximum", high}};
         put(key, list_of(std::move(item), values.size()), values);

@@ -37,6 +37,9 @@ public:
 
     void flag(const Key& key, bool& value) override { put(key, value ? "true" : "false"); }
     void integer(const Key& key, int& value, int, int) override { put(key, fmt::format("{}", value)); }
+    void rate(const Key& key, Rate& value, int, int) override {
+        put(key, value.whole() ? rate_text(value) : toml_text(rate_text(value)));
+    }
     void integers(const Key& key, std::span<int> values, int, int) override { put(key, list_of(values)); }
     void seed(const Key& key, std::uint32_t& value) override { put(key, fmt::format("{}", value)); }
     void number(const Key& key, double& value, const Bounds&) override { put(key, number_text(value)); }

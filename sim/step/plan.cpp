@@ -85,7 +85,7 @@ StepOptions step_options(const Solver& solver) {
     options.activation = solver.activation;
     options.activation_band = solver.activation_band;
     options.substeps = solver.substeps;
-    options.solve = {solver.preconditioner, solver.tolerance, solver.max_iterations};
+    options.solve = {solver.preconditioner, solver.tolerance, solver.max_iterations, nullptr};
     options.decompose = solver.decompose;
     return options;
 }

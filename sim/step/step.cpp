@@ -115,6 +115,7 @@ ClothState initial_state(const Placement& placement) {
 
 StepReport step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                 StepWorkspace& ws) {
+    heed(options.solve.stop);
     const StepPlan& plan = plan_step(model, options, h, ws);
     StepOptions planned = options;
     planned.integrator = plan.integrator;

@@ -207,6 +207,7 @@ void RowForces::gather(const ClothModel& model, std::span<const std::uint8_t> ta
                         [&](std::size_t k, const RowState& a, const RowState& b, std::size_t count,
                             const Row& fa, const Row& fb) {
                             const GridTables::Extension& table = cloth.tables.extension[k];
+                            if (!table.any) return;
                             const std::uint32_t at = springs[k]->at(0, static_cast<std::uint32_t>(row));
                             split_row(a, b, table.rest, table.stiffness.row(row), table.damping.row(row),
                                       cloth.is_explicit[k].row(row),

@@ -27,7 +27,9 @@ void build_tables(const ClothModel& model, const GridSprings& grid, const BendLi
     for (std::size_t f = 0; f < 4; ++f) {
         const SpringRows& rows = *extension[f];
         GridTables::Extension& out = tables.extension[f];
-        if (rows.count() > 0) out.rest = model.springs.rest[rows.first];
+        out.any = rows.count() > 0;
+        if (!out.any) continue;
+        out.rest = model.springs.rest[rows.first];
         tabulate(grid, rows, of(model.springs.stiffness), out.stiffness);
         tabulate(grid, rows, of(model.springs.damping), out.damping);
     }

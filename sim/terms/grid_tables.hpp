@@ -39,6 +39,7 @@ inline constexpr std::array<GridFamily, 4> bend_families{{{0, 2, 0}, {0, 0, 2}, 
 struct GridTables {
     struct Extension {
         double rest = 0;  ///< m
+        bool any = false;
         RowTable stiffness, damping;
     };
     struct Bend {

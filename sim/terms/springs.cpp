@@ -31,6 +31,7 @@ void add_springs_of_row(const RowPass& pass, std::size_t row) {
                 [&](std::size_t k, const RowState& a, const RowState& b, std::size_t count, const Row& fa,
                     const Row& fb) {
                     const GridTables::Extension& t = pass.tables.extension[k];
+                    if (!t.any) return;
                     extension_row(a, b, t.rest, t.stiffness.row(row), t.damping.row(row), count, fa, fb);
                 });
 }

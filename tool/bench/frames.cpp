@@ -108,7 +108,8 @@ FrameStage measure_video(const Work& work, const RunFolder& folder, std::string&
     VideoSettings settings;
     settings.width = work.scene.clip.size[0];
     settings.height = work.scene.clip.size[1];
-    settings.fps_num = work.scene.clip.fps;
+    settings.fps_num = work.scene.clip.fps.num;
+    settings.fps_den = work.scene.clip.fps.den;
     const Stopwatch watch;
     tbb::parallel_for(std::size_t{0}, std::size_t{2}, [&](std::size_t s) {
         VideoWriter video(folder.video(s == 0 ? "textured" : "components", ".mp4"), settings);

@@ -57,8 +57,9 @@ void draw(const AccuracyStudy& study, CostAxis axis, const std::filesystem::path
 }
 
 std::string caption_of(const AccuracyPoint& point, const AccuracyStudy& study) {
-    return fmt::format("{}, steps of 1/{} s: {:.2g} s per second", point.setting.method(),
-                       point.setting.steps_per_frame * study.scene.clip.fps, point.median() / study.window());
+    return fmt::format("{}, steps of {} s: {:.2g} s per second", point.setting.method(),
+                       step_text(study.scene.clip.fps, point.setting.steps_per_frame),
+                       point.median() / study.window());
 }
 
 // The cheapest setting within the error beside the most accurate one, as far into the clip as the budget

@@ -233,4 +233,13 @@ std::string why_unusable(const RunFolder& folder, int frame, std::uint64_t scene
         version_of_run(folder), version());
 }
 
+FrameRecord read_frame(const RunFolder& folder, int frame, std::uint64_t scene_hash, std::size_t particles,
+                       std::size_t springs) {
+    try {
+        return read_record(folder.record(frame), scene_hash, particles, springs);
+    } catch (const InputError&) {
+        throw InputError(folder.record(frame), why_unusable(folder, frame, scene_hash));
+    }
+}
+
 }  // namespace unravel::tool

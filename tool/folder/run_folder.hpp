@@ -66,6 +66,10 @@ int cached_frames(const RunFolder& folder, const Scene& scene, std::uint64_t sce
 /// cached_frames() did not count.
 std::string why_unusable(const RunFolder& folder, int frame, std::uint64_t scene_hash);
 
+/// A frame of the cache. Throws InputError with why_unusable() where it can't be read.
+FrameRecord read_frame(const RunFolder& folder, int frame, std::uint64_t scene_hash, std::size_t particles,
+                       std::size_t springs);
+
 /// Hash of the scene as run. Only what changes the simulation counts.
 std::uint64_t scene_hash(const Scene& scene);
 

@@ -27,7 +27,8 @@ VideoSettings video_settings(const Scene& scene, const ClipOptions& options, Lay
     VideoSettings settings;
     settings.width = view_width(layout, scene.clip.size[0]);
     settings.height = scene.clip.size[1];
-    settings.fps_num = scene.clip.fps;
+    settings.fps_num = scene.clip.fps.num;
+    settings.fps_den = scene.clip.fps.den;
     settings.codec = options.codec;
     settings.preset = options.preset;
     settings.crf = options.crf;

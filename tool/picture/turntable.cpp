@@ -16,8 +16,8 @@ void make_turntable(Scene& scene, ClipOptions& options, double seconds, int fram
         camera.keyframes.clear();
         camera.orbit = 360;
     }
-    const int frames = std::max(1, static_cast<int>(std::lround(seconds * scene.clip.fps)));
-    scene.clip.duration = static_cast<double>(frames) / scene.clip.fps;
+    const int frames = std::max(1, static_cast<int>(std::lround(seconds * scene.clip.fps.per_second())));
+    scene.clip.duration = scene.clip.fps.time_of(frames);
     options.first = 0;
     options.last = frames - 1;
     for (ClipView& view : options.views) view.name += "_turntable";

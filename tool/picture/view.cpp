@@ -218,7 +218,7 @@ Vec3 on_the_way(const ClothState& a, const ClothState& b, std::size_t p, double 
 }  // namespace
 
 double frame_time(const Scene& scene, int frame) {
-    return static_cast<double>(frame) / scene.clip.fps;
+    return scene.clip.fps.time_of(frame);
 }
 
 void make_draw_frame(const Scene& scene, const ClothModel& model, const FrameRecord& record,
@@ -237,7 +237,7 @@ std::vector<double> exposure_times(const Scene& scene, int frame) {
     std::vector<double> times;
     for (int k = 0; k < count; ++k)
         times.push_back(frame_time(scene, frame) -
-                        scene.look.shutter / scene.clip.fps * (1 - (k + 0.5) / count));
+                        scene.look.shutter * scene.clip.fps.time_of(1) * (1 - (k + 0.5) / count));
     return times;
 }
 

@@ -145,7 +145,7 @@ void write_report_page(const Scene& scene, const ClothModel& model, const RunFol
         pictures.emplace_back(name, std::move(inside));
     }
     data["size"] = scene.clip.size;
-    data["fps"] = scene.clip.fps;
+    data["fps"] = scene.clip.fps.per_second();
     data["series"] = page_series(frames, reports, model);
     data["summary"] = page_summary(scene, model, frames, reports, facts.status);
     data["warnings"] = page_warnings(scene, frames, reports, facts.status);

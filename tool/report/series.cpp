@@ -133,9 +133,9 @@ std::string page_summary(const Scene& scene, const ClothModel& model, const std:
         whole += r.rvm_whole.value_or(0);
         seconds += r.times.step();
     }
-    std::string text =
-        fmt::format("{}: {} frames at {} per second, {} steps of {:.4g} ms, {} particles", status,
-                    frames.size(), scene.clip.fps, reports.size(), 1e3 * scene.solver.step, model.size());
+    std::string text = fmt::format("{}: {} frames at {} per second, {} steps of {:.4g} ms, {} particles",
+                                   status, frames.size(), rate_text(scene.clip.fps), reports.size(),
+                                   1e3 * scene.solver.step, model.size());
     if (seconds > 0) text += fmt::format(", {} of simulation", duration_text(seconds));
     if (compared && whole > 0)
         text += fmt::format(", {:.1f}% fewer RVMs than undecomposed",

@@ -59,6 +59,10 @@ Json totals(const std::vector<StepReport>& reports, std::size_t particles) {
 
 }  // namespace
 
+Json rate_json(const Rate& rate) {
+    return rate.whole() ? Json(rate.num) : Json(rate_text(rate));
+}
+
 Json run_json(const Scene& scene, const Simulation& simulation, const RunSource& source, int threads,
               const std::string& status, const ClipReport* clip) {
     Json json;
@@ -72,7 +76,7 @@ Json run_json(const Scene& scene, const Simulation& simulation, const RunSource&
     json["springs"] = {{"stretch", simulation.model.springs.stretch_count},
                        {"shear", simulation.model.springs.size() - simulation.model.springs.stretch_count},
                        {"bend", simulation.model.bends.size()}};
-    json["fps"] = scene.clip.fps;
+    json["fps"] = rate_json(scene.clip.fps);
     json["frames"] = source.hashes().size();
     const std::vector<StepReport> reports = source.reports();
     json["steps"] = reports.size();

@@ -26,7 +26,9 @@ RunSource::RunSource(const Scene& scene, const RunFolder& folder, std::uint64_t 
       simulation_(simulation),
       cached_(cached),
       arena_(threads),
-      reports_(folder.root) {}
+      reports_(folder.root) {
+    simulation.options.solve.stop = InterruptWatch::flag();
+}
 
 std::optional<FrameRecord> RunSource::next() {
     if (frame_ >= scene_.clip.frames() || InterruptWatch::requested()) return std::nullopt;
@@ -37,7 +39,11 @@ std::optional<FrameRecord> RunSource::next() {
         if (frame_ + 1 == cached_) restore(simulation_, record);
     } else {
         StageTimer timer;
-        arena_.execute([&] { record = simulate(); });
+        try {
+            arena_.execute([&] { record = simulate(); });
+        } catch (const Stopped&) {
+            return std::nullopt;
+        }
         timer.lap(seconds_);
         write_record(folder_.record(frame_), scene_hash_, record);
     }

@@ -16,7 +16,7 @@ struct AccuracyStudy {
     std::vector<AccuracyPoint> points;
     int skipped = 0;       ///< settings that did not fit the budget
     bool stopped = false;  ///< by keep_on
-    double window() const { return static_cast<double>(reference.frames) / scene.clip.fps; }  ///< s
+    double window() const { return scene.clip.fps.time_of(reference.frames); }  ///< s
     const AccuracyPoint* find(const AccuracySetting& setting) const;  ///< null: not among the points
 };
 

@@ -57,8 +57,8 @@ AccuracyStudy collect_accuracy(const Scene& scene, const std::filesystem::path& 
     folder.save_points(study.points);
     for (std::size_t k = 0; k < grid.size(); ++k) {
         if (!study.find(grid[k]))
-            missing += fmt::format("\n  {}, steps of 1/{} s: {}", grid[k].method(),
-                                   grid[k].steps_per_frame * scene.clip.fps,
+            missing += fmt::format("\n  {}, steps of {} s: {}", grid[k].method(),
+                                   step_text(scene.clip.fps, grid[k].steps_per_frame),
                                    why_missing(path, "accuracy", static_cast<int>(k)));
     }
     return study;

@@ -6,6 +6,7 @@
 #include "base/whole_file.hpp"
 #include "sim/run/simulate.hpp"
 #include "sim/step/explicit_limit.hpp"
+#include "tool/base/interrupt.hpp"
 #include "tool/study/accuracy/accuracy.hpp"
 
 namespace unravel::tool {
@@ -73,8 +74,8 @@ AccuracySetting second_reference(const Scene& scene, int steps_per_frame, double
     const ClothModel model = build_model(scene, placement);
     int finer = 1;
     while (finer <= finer_explicit &&
-           !(explicit_limit(model, options, 1.0 / (scene.clip.fps * steps_per_frame * finer)).share <
-             safe_share))
+           !(explicit_limit(model, options, 1.0 / (scene.clip.fps.per_second() * steps_per_frame * finer))
+                 .share < safe_share))
         finer *= 2;
     if (finer > finer_explicit) return reference_setting(Integrator::bdf2, steps_per_frame);
     const double each = seconds_a_step(
@@ -125,7 +126,7 @@ AccuracyRun run_setting(const Scene& scene, const AccuracySetting& setting, int 
     // Explicit steps in one go, as fast as they can be: a step a frame, in parts.
     const bool in_parts = setting.integrator == Integrator::explicit_;
     const int steps = in_parts ? 1 : setting.steps_per_frame;
-    variant.solver.step = 1.0 / (scene.clip.fps * steps);
+    variant.solver.step = 1.0 / (scene.clip.fps.per_second() * steps);
     variant.solver.substeps = in_parts ? setting.steps_per_frame : 1;
     variant.solver.threshold = setting.threshold;
     variant.solver.tolerance = setting.tolerance;
@@ -134,6 +135,7 @@ AccuracyRun run_setting(const Scene& scene, const AccuracySetting& setting, int 
     variant.solver.bend = setting.bend;
     variant.solver.adaptive.reset();
     Simulation simulation = start_simulation(variant);
+    simulation.options.solve.stop = InterruptWatch::flag();
     const double limit = far_out * diagonal_of(scene);
 
     AccuracyRun run;
@@ -167,6 +169,9 @@ AccuracyRun run_setting(const Scene& scene, const AccuracySetting& setting, int 
         }
     } catch (const SimulationError&) {
         run.point.broke = true;
+    } catch (const Stopped&) {
+        run.stopped = true;
+        return run;
     }
     run.point.seconds = {seconds};
     return run;
@@ -176,11 +181,11 @@ AccuracyReference make_reference(const Scene& scene, double seconds, const std::
     AccuracyReference reference;
     const int all = scene.clip.frames() - 1;
     // An eighth of a second by moderate steps tells what a step costs.
-    const int probe_frames = std::max(1, scene.clip.fps / 8);
+    const int probe_frames = std::max(1, static_cast<int>(scene.clip.fps.per_second()) / 8);
     const AccuracyRun probe = run_setting(scene, reference_setting(Integrator::adaptive_imex2, 64),
                                           std::min(all, probe_frames), keep_on);
     const double per_step = seconds_a_step(probe);
-    const int wanted = std::min(all, std::max(1, scene.clip.fps / 2));
+    const int wanted = std::min(all, std::max(1, static_cast<int>(scene.clip.fps.per_second()) / 2));
     int steps = 256;
     while (steps < finest_reference && 2 * (2.0 * steps) * wanted * per_step < seconds) steps *= 2;
 
@@ -189,7 +194,7 @@ AccuracyReference make_reference(const Scene& scene, double seconds, const std::
     AccuracyRun first = run_setting(scene, reference.first, wanted, keep_on);
     const AccuracyRun other = run_setting(scene, reference.second, wanted, keep_on);
     const double diagonal = diagonal_of(scene);
-    const int least = static_cast<int>(std::ceil(least_window * scene.clip.fps));
+    const int least = static_cast<int>(std::ceil(least_window * scene.clip.fps.per_second()));
     reference.frames = comparable_frames(first.trajectory, other.trajectory, diagonal, least);
     reference.trajectory = std::move(first.trajectory);
     reference.trajectory.resize(static_cast<std::size_t>(reference.frames));

@@ -39,9 +39,10 @@ public:
         }
         const AccuracyReference& reference = study_.reference;
         if (!budget_.quiet) {
-            fmt::print(stderr, "reference: {} at 1/{} s, confirmed to {:.2e} by {} over {:.2f} s\n",
-                       reference.first.method(), reference.first.steps_per_frame * study_.scene.clip.fps,
-                       reference.floor, reference.second.method(), study_.window());
+            fmt::print(stderr, "reference: {} at {} s, confirmed to {:.2e} by {} over {:.2f} s\n",
+                       reference.first.method(),
+                       step_text(study_.scene.clip.fps, reference.first.steps_per_frame), reference.floor,
+                       reference.second.method(), study_.window());
         }
         return true;
     }

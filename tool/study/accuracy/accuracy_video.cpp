@@ -76,7 +76,8 @@ void write_accuracy_video(const Scene& studied, const AccuracySide& cheap, const
     VideoSettings settings;
     settings.width = 2 * side_width;
     settings.height = caption_height + side_height + scale_height;
-    settings.fps_num = scene.clip.fps;
+    settings.fps_num = scene.clip.fps.num;
+    settings.fps_den = scene.clip.fps.den;
     VideoWriter video(file, settings);
 
     const double worst = worst_distance(cheap.trajectory, accurate.trajectory);
@@ -87,7 +88,7 @@ void write_accuracy_video(const Scene& studied, const AccuracySide& cheap, const
     std::array<Image, 2> pictures;
     const auto frames = std::min(cheap.trajectory.size(), accurate.trajectory.size());
     for (std::size_t k = 0; k <= frames && keep_on(); ++k) {
-        const double t = static_cast<double>(k) / scene.clip.fps;
+        const double t = scene.clip.fps.time_of(static_cast<int>(k));
         const std::vector<Vec3>& exact = k == 0 ? placement.x : accurate.trajectory[k - 1];
         const std::vector<Vec3>& near = k == 0 ? placement.x : cheap.trajectory[k - 1];
         record.frame = static_cast<int>(k);
@@ -113,7 +114,8 @@ void write_accuracy_video(const Scene& studied, const AccuracySide& cheap, const
             draw_scale(canvas, worst, caption_height + side_height, settings.width);
         });
         video.add(picture);
-        for (int still = 0; k == frames && still < scene.clip.fps / 2; ++still) video.add(picture);
+        for (int still = 0; k == frames && 2 * still < scene.clip.fps.per_second(); ++still)
+            video.add(picture);
     }
     if (video.frames() > 0) video.finish();
 }

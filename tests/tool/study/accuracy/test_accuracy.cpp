@@ -112,7 +112,7 @@ TEST_CASE("explicit steps of a study are parts of one step a frame, the same as 
     CHECK(run.point.rvm == 0);
     Scene steps = scene;
     steps.solver.integrator = Integrator::explicit_;
-    steps.solver.step = 1.0 / (16 * scene.clip.fps);
+    steps.solver.step = 1.0 / (16 * scene.clip.fps.per_second());
     Simulation simulation = start_simulation(steps);
     for (int k = 0; k < 2; ++k) next_record(simulation);
     CHECK(distance(run.trajectory, {run.trajectory[0], simulation.state.x}, 1) < 1e-12);
