@@ -202,7 +202,7 @@ void ClothRenderer::update_colors(const DrawFrame& frame) {
             const float lit = (front ? 1.f : -1.f) * normals_[p].dot(lamp);
             const float shade = std::min(0.67f + 0.36f * (0.5f + 0.5f * lit), 1.f);  // of encoded colours
             const auto channel = [&](std::uint8_t c) {
-                return static_cast<std::uint8_t>(shade * static_cast<float>(c) + 0.5f);
+                return static_cast<std::uint8_t>(std::lround(shade * static_cast<float>(c)));
             };
             const Rgb c = frame.particle_colors[p];
             shaded_[p] = {channel(c.r), channel(c.g), channel(c.b), 255};

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -36,7 +37,7 @@ struct Clip {
     double duration = 3.0;  ///< s; frames 0 … round(duration·fps), frame k due at exactly k/fps
     int fps = 30;           ///< frames per second
     std::array<int, 2> size{1280, 720};  ///< pixels, both even (4:2:0 video)
-    int frames() const { return static_cast<int>(duration * fps + 0.5) + 1; }
+    int frames() const { return static_cast<int>(std::lround(duration * fps)) + 1; }
 };
 
 /// Elastic constants of a cloth as a continuum, so that refining the grid refines the same cloth.

@@ -1,6 +1,7 @@
 #include "tool/picture/wire_colors.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/palette.hpp"
 
@@ -12,7 +13,7 @@ constexpr std::uint8_t faint = 110, solid = 255;
 
 Rgb mix(Rgb a, Rgb b, double t) {
     const auto channel = [t](std::uint8_t x, std::uint8_t y) {
-        return static_cast<std::uint8_t>(x + t * (y - x) + 0.5);
+        return static_cast<std::uint8_t>(std::lround(x + t * (y - x)));
     };
     return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
 }
