@@ -17,6 +17,15 @@ struct Projection {
 Projection make_camera(const CameraView& view, float aspect, const Vec3f& low, const Vec3f& high,
                        float reach);
 
+/// The camera moved, without being turned, to where the scene's bounds and their shadow on the ground fill a
+/// picture of this aspect but for a rim, its target as far away as their middle.
+CameraView fitted(const CameraView& view, const DrawScene& scene, float aspect);
+
+/// The camera moved sideways by `lens` in the plane of its lens [m], its frustum sheared so that what lies
+/// `focus` away [m] stays where it is in the picture, which then moves by `shift`, in units of its half
+/// sizes.
+Projection shifted(const Projection& camera, const Vec2f& lens, float focus, const Vec2f& shift);
+
 /// World to the camera's frame, which looks along −z.
 Eigen::Matrix4f look_at(const Vec3f& eye, const Vec3f& target, const Vec3f& up);
 

@@ -9,6 +9,7 @@
 #include "render/coarse_mesh.hpp"
 #include "render/color.hpp"
 #include "render/normals.hpp"
+#include "render/picture_texture.hpp"
 #include "render/shadow.hpp"
 
 namespace unravel::render {
@@ -22,20 +23,6 @@ constexpr std::size_t fine_mesh = 60'000;
 // Particles of a cloth that cast its shadow: a software renderer takes more for every triangle than a pixel
 // of shadow is worth.
 constexpr std::size_t key_casters = 30'000, sky_casters = 1'600;
-
-/// `repeats`: beyond [0, 1]² the picture goes on; else its rim does not take in the opposite one.
-void upload_texture(GLuint texture, const Image& image, bool repeats) {
-    glBindTexture(GL_TEXTURE_2D, texture);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, image.width, image.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                 image.pixels.data());
-    glGenerateMipmap(GL_TEXTURE_2D);
-    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
-        glTexParameteri(GL_TEXTURE_2D, axis, repeats ? GL_REPEAT : GL_CLAMP_TO_EDGE);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-    if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
-        glTexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAX_ANISOTROPY_EXT, 8);
-}
 
 /// Between neighbouring vertices, where cells are square [m].
 float vertex_gap(const ClothMesh& mesh) {
@@ -96,18 +83,23 @@ float thread_of(const ClothAppearance& look) {
                                              : std::min(look.period / 24, 0.0025f);
 }
 
+/// Whether light is worked out at vertices.
+bool at_vertices(const ClothMesh& mesh, const ClothRenderer::Options& options) {
+    if (options.quality == Quality::standard) return options.software && mesh.triangles.size() > fine_mesh;
+    return options.quality == Quality::draft;
+}
+
 /// `threads`: some may be large enough to be seen.
 GlProgram fabric_program(const ClothMesh& mesh, const ClothRenderer::Options& options, bool threads) {
     const ClothAppearance& look = mesh.appearance;
     const std::string defines = fmt::format(
         "#define WEAVE {}\n#define PICTURE {}\n#define LIGHT_AT_VERTICES {}\n#define THREADS {}\n"
-        "#define ENCODED {}\n#define SUPERSAMPLE {}\n",
-        static_cast<int>(look.weave), mesh.texture.pixels.empty() ? 0 : 1,
-        options.software && mesh.triangles.size() > fine_mesh ? 1 : 0, threads ? 1 : 0,
-        options.encoded ? 1 : 0, options.supersample);
+        "#define ENCODED {}\n#define SUPERSAMPLE {}\n{}",
+        static_cast<int>(look.weave), mesh.texture.pixels.empty() ? 0 : 1, at_vertices(mesh, options) ? 1 : 0,
+        threads ? 1 : 0, options.encoded ? 1 : 0, options.supersample, options.light);
     GlProgram program({"frame.glsl", "light.glsl", "sky.glsl", "fabric.glsl", "cloth.vert"},
-                      {"frame.glsl", "quads.glsl", "light.glsl", "fabric.glsl", "weave.glsl", "color.glsl",
-                       "written.glsl", "cloth.frag"},
+                      {"frame.glsl", "quads.glsl", "light.glsl", "fabric.glsl", "weave.glsl", "tone.glsl",
+                       "color.glsl", "written.glsl", "cloth.frag"},
                       defines);
     ShadowMaps::connect(program);
     program.sampler("picture", 0);
@@ -163,7 +155,7 @@ ClothRenderer::ClothRenderer(const DrawScene& scene, const Options& options)
                 const Vec2f at = uv.cwiseProduct(scale);
                 return at.minCoeff() < -1e-4f || at.maxCoeff() > 1 + 1e-4f;
             };
-            upload_texture(cloth.texture, mesh.texture, std::ranges::any_of(mesh.uv, beyond));
+            upload_picture(cloth.texture, mesh.texture, std::ranges::any_of(mesh.uv, beyond));
             for (const GlProgram* program : {&cloth.near, &cloth.far}) {
                 program->use();
                 glUniform2fv(program->uniform("picture_scale"), 1, scale.data());
@@ -202,7 +194,7 @@ void ClothRenderer::update_colors(const DrawFrame& frame) {
             const float lit = (front ? 1.f : -1.f) * normals_[p].dot(lamp);
             const float shade = std::min(0.67f + 0.36f * (0.5f + 0.5f * lit), 1.f);  // of encoded colours
             const auto channel = [&](std::uint8_t c) {
-                return static_cast<std::uint8_t>(shade * static_cast<float>(c) + 0.5f);
+                return static_cast<std::uint8_t>(std::lround(shade * static_cast<float>(c)));
             };
             const Rgb c = frame.particle_colors[p];
             shaded_[p] = {channel(c.r), channel(c.g), channel(c.b), 255};

@@ -5,6 +5,7 @@
 
 #include "render/draw_scene.hpp"
 #include "render/gl_objects.hpp"
+#include "render/renderer.hpp"
 
 namespace unravel::render {
 
@@ -16,6 +17,8 @@ public:
                           ///< light at vertices and cast shadows by fewer triangles
         bool encoded;     ///< shaders write sRGB
         int supersample;  ///< drawn pixels along a side of a finished one
+        Quality quality;  ///< drafts get their light at vertices, final pictures pixel by pixel
+        std::string light;  ///< of light_defines.hpp
     };
     ClothRenderer(const DrawScene& scene, const Options& options);
 

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,10 @@ struct Tessellation {
     std::vector<std::uint32_t> indices = {};          ///< (triangles × 3)
 };
 
+/// How a solid's surface takes the light: broad highlights, hardly any, sharp ones with what is around
+/// mirrored in them, or those in the colour of the solid alone.
+enum class SurfaceFinish { satin, matt, gloss, metal };
+
 /// What is drawn of a solid, in its own frame: an endless plane facing +y, a surface that keeps its shape, or
 /// a mesh whose normals follow from its triangles.
 struct SolidMesh {
@@ -61,12 +66,29 @@ struct SolidMesh {
     std::vector<std::array<std::uint32_t, 3>> triangles = {};  ///< mesh: counter-clockwise from outside
     bool deforms = false;                                      ///< mesh: DrawFrame has its positions
     Rgb color{201, 183, 156};
+    SurfaceFinish finish = SurfaceFinish::satin;
+    Image texture = {};      ///< in place of the colour, laid on along the three axes; empty: none
+    float texture_size = 1;  ///< m that it spans
     bool is_mesh() const { return !triangles.empty(); }
 };
 
 struct CameraView {
     Vec3f position{1.6f, 1.2f, 1.9f}, target{0, 0.3f, 0}, up{0, 1, 0};
-    float fov = 35;  ///< degrees, vertical
+    float fov = 35;      ///< degrees, vertical
+    float aperture = 0;  ///< m, across the lens; pictures of final quality are sharp only at `focus` then
+    float focus = 0;     ///< m from the camera; 0: the target's distance
+    bool fit = false;  ///< stands where what is known of the clip beforehand fills the picture, see fitted()
+};
+
+/// Light beside the key light's direction. Colours are linear, strengths are shares of the usual.
+struct Lighting {
+    Vec3f key_color{1.0f, 0.965f, 0.91f};
+    float key_strength = 1, key_radius = 0.05f;  ///< tangent of the lamp's radius: about six degrees across
+    std::optional<Vec3f> sky_color;              ///< absent: a cool white with a share of the background
+    float sky_strength = 1;
+    Image sky;              ///< all directions (render/sky_light.hpp) in place of that colour; empty: none
+    bool show_sky = false;  ///< as the background, too
+    float exposure = 1;     ///< factor on all light
 };
 
 /// Fixed for a whole clip.
@@ -76,13 +98,19 @@ struct DrawScene {
     float spacing = 0.02f;                            ///< m, typical length of those springs at rest
     std::vector<SolidMesh> solids;
     Rgb background{216, 222, 230};
+    std::optional<Rgb> background_top;  ///< of a gradient up from `background`
+    Image background_image;             ///< fills the picture, before all other backgrounds but the sky
     bool transparent =
         false;  ///< neither background nor ground: alpha is what shapes cover, colours are straight
     bool show_ground = true;
     float ground_height = 0;  ///< m
     Rgb ground{141, 144, 150};
+    Image ground_texture;                   ///< in place of that colour, repeated; empty: none
+    float ground_size = 1;                  ///< m that the picture spans
+    bool horizon = false;                   ///< the ground does not fade away near the scene
     Rgb components_background{27, 30, 36};  ///< of the component view: dark, so that white and every hue read
     Vec3f key_direction{-0.35f, 0.8f, 0.5f};  ///< towards the key light; need not be unit
+    Lighting light;
     Vec3f bounds_low{-1, 0, -1},
         bounds_high{1, 1, 1};  ///< m, of what is known of the clip beforehand: the ground's extent
 };

@@ -22,8 +22,9 @@ struct FrameBlock {
                              ///< how much solids yield to cloth [m]
     Eigen::Vector4f
         viewport;  ///< width, height [px]; pixels per metre at a depth of 1 m; wire bias towards the eye [m]
+    Eigen::Vector4f sky_harmonics[9];  ///< light from all around, where the sky is an image (sky_light.hpp)
 };
 static_assert(sizeof(FrameBlock) ==
-              (2 + FrameBlock::sky_directions) * 64 + (FrameBlock::sky_directions + 11) * 16);
+              (2 + FrameBlock::sky_directions) * 64 + (FrameBlock::sky_directions + 20) * 16);
 
 }  // namespace unravel::render

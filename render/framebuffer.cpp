@@ -51,8 +51,11 @@ Framebuffer::Framebuffer(const GlContext& context, const Options& options)
       transparent_(options.transparent),
       encoded_(options.encoded),
       smooths_(options.outlines && samples_ == 1),
+      light_(options.light),
       resolve_({"screen.vert"}, {"resolve.frag"}, fmt::format("#define SAMPLES {}\n", samples_)),
       average_({"screen.vert"}, {"average.frag"}),
+      develop_({"screen.vert"}, {"tone.glsl", "color.glsl", "written.glsl", "develop.frag"},
+               "#define ENCODED 0\n"),
       factor_(average_.uniform("factor")),
       share_(average_.uniform("share")),
       straight_(average_.uniform("straight")) {
@@ -66,8 +69,8 @@ Framebuffer::Framebuffer(const GlContext& context, const Options& options)
                         width_, height_, supersample_, limit));
 
     glBindFramebuffer(GL_FRAMEBUFFER, picture_);
-    make_samples(picture_color_, GL_COLOR_ATTACHMENT0, samples_, GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE,
-                 w, h);
+    make_samples(picture_color_, GL_COLOR_ATTACHMENT0, samples_, light_ ? GL_RGBA16F : GL_SRGB8_ALPHA8,
+                 GL_RGBA, GL_UNSIGNED_BYTE, w, h);
     make_samples(picture_depth_, GL_DEPTH_ATTACHMENT, samples_, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT,
                  GL_UNSIGNED_INT, w, h);
     check_complete(samples_ > 1 ? "multisampled" : "picture's");
@@ -79,7 +82,9 @@ Framebuffer::Framebuffer(const GlContext& context, const Options& options)
         make_target(copy_color_, copy_, encoded_ ? GL_RGBA8 : GL_SRGB8_ALPHA8, w, h, "outlines'");
     }
     // A sum of many small shares needs more than eight bits.
-    if (options.exposures) make_target(exposed_color_, exposed_, GL_RGBA16F, width_, height_, "exposure's");
+    if (options.exposures || light_)
+        make_target(exposed_color_, exposed_, light_ ? GL_RGBA32F : GL_RGBA16F, width_, height_,
+                    "exposure's");
 
     glBindRenderbuffer(GL_RENDERBUFFER, finished_color_);
     glRenderbufferStorage(GL_RENDERBUFFER, GL_SRGB8_ALPHA8, width_, height_);
@@ -89,6 +94,7 @@ Framebuffer::Framebuffer(const GlContext& context, const Options& options)
 
     resolve_.sampler("picture", 0);
     average_.sampler("picture", 0);
+    develop_.sampler("picture", 0);
 }
 
 void Framebuffer::begin(Rgb background) const {
@@ -103,8 +109,9 @@ void Framebuffer::begin(Rgb background) const {
     // Without it the target takes colours as they are.
     (encoded_ ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
     const Vec3f bytes(background.r, background.g, background.b);
-    const Vec3f c = transparent_ ? Vec3f(0, 0, 0) : encoded_ ? Vec3f(bytes / 255) : linear(background);
-    glClearColor(c.x(), c.y(), c.z(), transparent_ ? 0 : 1);
+    const bool clear = transparent_ || light_;
+    const Vec3f c = clear ? Vec3f(0, 0, 0) : encoded_ ? Vec3f(bytes / 255) : linear(background);
+    glClearColor(c.x(), c.y(), c.z(), clear ? 0 : 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
@@ -165,6 +172,43 @@ void Framebuffer::finish(int k, int n) const {
         glBindFramebuffer(GL_READ_FRAMEBUFFER, samples_ > 1 ? resolved_ : picture_);
         return;
     }
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, finished_);
+}
+
+void Framebuffer::expose(int k, int n) const {
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glBindVertexArray(no_vertices_);
+    glActiveTexture(GL_TEXTURE0);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, k == 0 ? GL_ZERO : GL_ONE);
+    average(exposed_, picture_color_, supersample_, 1.f / static_cast<float>(n), false);
+    glDisable(GL_BLEND);
+}
+
+void Framebuffer::begin_finished(Rgb background) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, finished_);
+    glViewport(0, 0, width_, height_);
+    glDisable(GL_BLEND);
+    glEnable(GL_FRAMEBUFFER_SRGB);
+    const Vec3f c = transparent_ ? Vec3f(0, 0, 0) : linear(background);
+    glClearColor(c.x(), c.y(), c.z(), transparent_ ? 0 : 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+}
+
+void Framebuffer::develop() const {
+    glDisable(GL_DEPTH_TEST);
+    glBindVertexArray(no_vertices_);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, exposed_color_);
+    develop_.use();
+    glUniform1i(develop_.uniform("straight"), transparent_ ? 1 : 0);
+    if (!transparent_) {
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    }
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisable(GL_BLEND);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, finished_);
 }
 

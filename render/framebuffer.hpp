@@ -27,6 +27,9 @@ public:
         /// that takes longer than all else about it. What is blended in such a picture is blended as encoded.
         bool encoded;
         bool outlines;  ///< smooth them by begin_outlines(), with one sample a pixel
+        /// The picture holds linear light of any brightness; of frames that are the mean of many, tones are
+        /// made by develop().
+        bool light = false;
     };
     /// Throws RendererError where the renderer cannot hold a picture of this size.
     Framebuffer(const GlContext& context, const Options& options);
@@ -50,18 +53,25 @@ public:
     /// Averages the picture down, as the k-th exposure of n; after the last one the finished frame is bound
     /// for reading.
     void finish(int k = 0, int n = 1) const;
+    /// Adds the picture to the mean of light, as the k-th of n.
+    void expose(int k, int n) const;
+    /// Makes the finished frame current, of one colour or, where transparent, of none: what lies behind is
+    /// drawn now.
+    void begin_finished(Rgb background) const;
+    /// Lays the mean of light over that as a picture, which is bound for reading.
+    void develop() const;
 
 private:
     void resolve() const;
     void average(GLuint target, GLuint picture, int factor, float share, bool straight) const;
 
     int width_, height_, samples_, supersample_;
-    bool transparent_, encoded_, smooths_;
+    bool transparent_, encoded_, smooths_, light_;
     GlFramebuffer picture_, flat_, copy_, resolved_, exposed_, finished_;
     GlRenderbuffer finished_color_;
     GlTexture picture_color_, picture_depth_, copy_color_, resolved_color_, exposed_color_;
     GlVertexArray no_vertices_;
-    GlProgram resolve_, average_;
+    GlProgram resolve_, average_, develop_;
     GLint factor_, share_, straight_;
 };
 

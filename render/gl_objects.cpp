@@ -63,8 +63,9 @@ void allocate_texels(GLuint texture, GLenum format, int width, int height, GLenu
 
 void float_attribute(GLuint location, int components, int stride_bytes, std::size_t offset_bytes) {
     glEnableVertexAttribArray(location);
+    // GL takes an offset as a pointer.
     glVertexAttribPointer(location, components, GL_FLOAT, GL_FALSE, stride_bytes,
-                          reinterpret_cast<const void*>(offset_bytes));
+                          reinterpret_cast<const void*>(offset_bytes));  // NOLINT(performance-no-int-to-ptr)
 }
 
 GlProgram::GlProgram(Files vertex, Files fragment, std::string_view defines) {

@@ -7,6 +7,7 @@
 
 #include "render/bounds.hpp"
 #include "render/color.hpp"
+#include "render/picture_texture.hpp"
 
 namespace unravel::render {
 
@@ -38,21 +39,26 @@ Eigen::Array2f shadow_of(const Vec3f& p, const Vec3f& key, float level) {
 
 }  // namespace
 
-Ground::Ground(const DrawScene& scene, int map_size, bool encoded)
+Ground::Ground(const DrawScene& scene, const Options& options)
     : scene_(&scene),
       key_(scene.key_direction.normalized()),
-      size_(map_size),
-      open_({"map.vert"}, {"frame.glsl", "light.glsl", "pattern.glsl", "ground_open.frag"}),
-      visible_({"map.vert"}, {"frame.glsl", "light.glsl", "pattern.glsl", "ground_visible.frag"}),
+      blends_(options.blends),
+      sharp_(options.sharp),
+      size_(options.map_size),
+      open_({"map.vert"}, {"frame.glsl", "light.glsl", "pattern.glsl", "ground_open.frag"}, options.light),
+      visible_({"map.vert"}, {"frame.glsl", "light.glsl", "pattern.glsl", "ground_visible.frag"},
+               options.light),
       soft_({"map.vert"}, {"ground_soft.frag"}),
       shown_({"frame.glsl", "light.glsl", "ground.vert"},
-             {"frame.glsl", "light.glsl", "color.glsl", "written.glsl", "ground.frag"},
-             fmt::format("#define GRID {}\n#define ENCODED {}\n", cells, encoded ? 1 : 0)),
+             {"frame.glsl", "light.glsl", "tone.glsl", "color.glsl", "written.glsl", "ground.frag"},
+             fmt::format("#define GRID {}\n#define ENCODED {}\n#define FADES {}\n#define PICTURE {}\n{}",
+                         cells, options.encoded ? 1 : 0, blends_ ? 1 : 0,
+                         scene.ground_texture.pixels.empty() ? 0 : 1, options.shown)),
       quiet_({"frame.glsl", "ground_quiet.vert"},
              {"frame.glsl", "color.glsl", "written.glsl", "ground_quiet.frag"}, "#define ENCODED 0\n") {
     // Fine enough to hold the shadow of the sphere around the scene.
     const float radius = 0.5f * (scene.bounds_high - scene.bounds_low).norm();
-    least_texel_ = 2.2f * radius / std::max(key_.y(), lowest_light) / static_cast<float>(map_size);
+    least_texel_ = 2.2f * radius / std::max(key_.y(), lowest_light) / static_cast<float>(size_);
 
     make_map(rough_open_map_, rough_open_target_, GL_R16, open_size, open_size);
     make_map(open_map_, open_target_, GL_R16, open_size, open_size);
@@ -69,7 +75,11 @@ Ground::Ground(const DrawScene& scene, int map_size, bool encoded)
         program->sampler("open_map", first_unit);
         program->sampler("visible_map", first_unit);
         program->sampler("soft_map", first_unit + 1);
+        program->sampler("picture", 0);
     }
+    shown_.use();
+    glUniform1f(shown_.uniform("per_picture"), 1 / scene.ground_size);
+    if (!scene.ground_texture.pixels.empty()) upload_picture(picture_, scene.ground_texture, true);
     quiet_.use();
     glUniform2f(quiet_.uniform("fade"), quiet_begin, quiet_end);
 
@@ -107,7 +117,7 @@ Ground::Region Ground::shadow_region(const DrawFrame& frame) const {
     visit_bounds(*scene_, frame, std::ref(stretch));
     // Penumbras reach out by half the lamp's width as seen from the ground, stretched where it stands low.
     const float lowness = std::max(key_.y(), lowest_light);
-    const float margin = ShadowMaps::lamp * top / (lowness * lowness);
+    const float margin = scene_->light.key_radius * top / (lowness * lowness);
     return {low - margin, (high - low).max(-2 * margin) + 2 * margin};
 }
 
@@ -147,7 +157,7 @@ void Ground::soften(GLuint map, GLuint target) const {
 }
 
 void Ground::light(const DrawFrame& frame, const ShadowMaps& shadows) {
-    if (!scene_->show_ground) return;
+    if (!scene_->show_ground || sharp_) return;
     const Eigen::Array2f middle(shadows.centre().x(), shadows.centre().z());
     open_region_ = {middle - 2 * shadows.radius(), Eigen::Array2f::Constant(4 * shadows.radius())};
     const PixelRect rect = place(shadow_region(frame));
@@ -191,9 +201,16 @@ void Ground::draw(DrawStyle style, const Vec3f& eye) const {
     glBindTexture(GL_TEXTURE_2D, open_map_);
     glActiveTexture(GL_TEXTURE0 + first_unit + 1);
     glBindTexture(GL_TEXTURE_2D, soft_map_);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, picture_);
     shown_.use();
+    if (blends_) {
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    }
     glBindVertexArray(grid_);
     glDrawElements(GL_TRIANGLES, 6 * cells * cells, GL_UNSIGNED_SHORT, nullptr);
+    glDisable(GL_BLEND);
 }
 
 }  // namespace unravel::render

@@ -12,8 +12,14 @@ namespace unravel::render {
 /// looked up from the picture.
 class Ground {
 public:
-    /// `map_size`: texels along a side of its map. `encoded`: shaders write sRGB.
-    Ground(const DrawScene& scene, int map_size, bool encoded);
+    struct Options {
+        int map_size;              ///< texels along a side of its map
+        bool encoded;              ///< shaders write sRGB
+        bool blends;               ///< what is behind it is more than one colour
+        bool sharp;                ///< light is looked up where it is seen, not in maps
+        std::string light, shown;  ///< of light_defines.hpp: for its maps, and for the picture
+    };
+    Ground(const DrawScene& scene, const Options& options);
 
     /// Lights the maps, laid where this frame's shapes are, by its shadow maps.
     void light(const DrawFrame& frame, const ShadowMaps& shadows);
@@ -37,10 +43,12 @@ private:
 
     const DrawScene* scene_;
     Vec3f key_;
+    bool blends_, sharp_;
     int size_;                     ///< of the key light's maps [px]
     float least_texel_ = 0;        ///< of those maps [m]; larger by steps where shadows are wide
     Region open_region_, region_;  ///< of this frame
     GlProgram open_, visible_, soft_, shown_, quiet_;
+    GlTexture picture_;
     GlTexture rough_open_map_, open_map_, visible_map_, soft_map_;
     GlFramebuffer rough_open_target_, open_target_, visible_target_, soft_target_;
     GlVertexArray square_, grid_;

@@ -10,6 +10,13 @@
 
 namespace unravel::render {
 
+/// How much a textured picture may cost.
+enum class Quality {
+    draft,     ///< one sample a pixel, shadows with hard edges, no shade of the sky
+    standard,  ///< soft shadows and shade worked out in one go
+    final_     ///< the mean of many pictures, each with its own place on lamp, sky, lens and pixel
+};
+
 struct RenderSettings {
     int width = 1280, height = 720;  ///< px
     /// Per pixel, clamped to what the renderer offers. 0: four on a GPU; in software one, with outlines
@@ -17,6 +24,8 @@ struct RenderSettings {
     int samples = 0;
     int supersample = 1;     ///< each pixel is the mean of supersample² drawn ones
     bool exposures = false;  ///< whether pictures may be the mean of several frames
+    Quality quality = Quality::standard;
+    int passes = 32;  ///< pictures of a final one; with more exposures than that, as many as those
 };
 
 /// Draws the frames of one scene. Lives on the context's thread. Everything is created with it: drawing

@@ -49,8 +49,14 @@ float stepped(float size, float least) {
     return least * std::exp2(0.25f * steps);
 }
 
-ShadowMaps::ShadowMaps(const DrawScene& scene, int key_size)
-    : key_size_(key_size), key_direction_(scene.key_direction.normalized()) {
+ShadowMaps::ShadowMaps(const DrawScene& scene, int key_size, Quality quality)
+    : sampled_(quality == Quality::final_),
+      no_sky_(quality == Quality::draft),
+      key_size_(key_size),
+      tile_(sampled_ ? key_size : small_tile),
+      lamp_(scene.light.key_radius),
+      lamp_middle_(scene.key_direction.normalized()),
+      key_direction_(lamp_middle_) {
     for (int k = 0; k < FrameBlock::sky_directions; ++k) {
         // Two rings, the upper one turned by half a step: together they spread evenly over the half sphere.
         const float height = k < 4 ? 0.85f : 0.32f, across = std::sqrt(1 - height * height);
@@ -58,7 +64,8 @@ ShadowMaps::ShadowMaps(const DrawScene& scene, int key_size)
         sky_directions_[k] = {across * std::cos(angle), height, across * std::sin(angle)};
     }
     make_depth_map(key_map_, key_target_, key_size_, key_size_);
-    make_depth_map(sky_maps_, sky_target_, columns * tile, rows * tile);
+    make_depth_map(sky_maps_, sky_target_, sampled_ ? tile_ : columns * tile_,
+                   sampled_ ? tile_ : rows * tile_);
     aim(scene.bounds_low, scene.bounds_high);
 }
 
@@ -68,19 +75,26 @@ void ShadowMaps::aim(const Vec3f& low, const Vec3f& high) {
     radius_ = stepped(0.51f * (high - low).norm(), 1);
     key_transform_ = parallel(centre_, radius_, key_direction_, key_size_);
     for (int k = 0; k < FrameBlock::sky_directions; ++k)
-        sky_transforms_[k] = parallel(centre_, radius_, sky_directions_[k], tile);
+        sky_transforms_[k] = parallel(centre_, radius_, sky_directions_[k], tile_);
+}
+
+void ShadowMaps::aim(const Vec3f& low, const Vec3f& high, const Vec2f& on_lamp, const Vec3f& sky) {
+    const Eigen::Matrix4f turn = look_at(lamp_middle_, Vec3f::Zero(), Vec3f(0, 1, 0));
+    key_direction_ = (lamp_middle_ + turn.block<2, 3>(0, 0).transpose() * (lamp_ * on_lamp)).normalized();
+    sky_directions_[0] = sky;
+    aim(low, high);
 }
 
 void ShadowMaps::describe(FrameBlock& block) const {
     block.shadow_matrix = to_texture(1, 1, 0, 0) * key_transform_;
-    constexpr float width = 1.f / columns, height = 1.f / rows;
+    const float width = sampled_ ? 1 : 1.f / columns, height = sampled_ ? 1 : 1.f / rows;
     for (int k = 0; k < FrameBlock::sky_directions; ++k) {
         block.sky_matrix[k] =
             to_texture(width, height, (k % columns) * width, (k / columns) * height) * sky_transforms_[k];
         block.sky_direction[k] << sky_directions_[k], 0;
     }
-    block.key_direction << key_direction_, lamp;
-    block.shadow << 2 * radius_ / key_size_, 2 * radius_, 2 * radius_ / tile, 0;
+    block.key_direction << key_direction_, lamp_;
+    block.shadow << 2 * radius_ / key_size_, 2 * radius_, 2 * radius_ / tile_, 0;
 }
 
 void ShadowMaps::draw(const DrawCasters& draw_casters) const {
@@ -97,14 +111,24 @@ void ShadowMaps::draw(const DrawCasters& draw_casters) const {
     glClear(GL_DEPTH_BUFFER_BIT);
     draw_casters(key_transform_, false);
 
+    if (!no_sky_) draw_sky(draw_casters);
+    glDisable(GL_DEPTH_CLAMP);
+}
+
+void ShadowMaps::draw_sky(const DrawCasters& draw_casters) const {
     glBindFramebuffer(GL_FRAMEBUFFER, sky_target_);
-    glViewport(0, 0, columns * tile, rows * tile);
+    if (sampled_) {
+        glViewport(0, 0, tile_, tile_);
+        glClear(GL_DEPTH_BUFFER_BIT);
+        draw_casters(sky_transforms_[0], false);
+        return;
+    }
+    glViewport(0, 0, columns * tile_, rows * tile_);
     glClear(GL_DEPTH_BUFFER_BIT);
     for (int k = 0; k < FrameBlock::sky_directions; ++k) {
-        glViewport((k % columns) * tile, (k / columns) * tile, tile, tile);
+        glViewport((k % columns) * tile_, (k / columns) * tile_, tile_, tile_);
         draw_casters(sky_transforms_[k], true);
     }
-    glDisable(GL_DEPTH_CLAMP);
 }
 
 void ShadowMaps::bind() const {

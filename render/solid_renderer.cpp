@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "render/color.hpp"
+#include "render/picture_texture.hpp"
 #include "render/shadow.hpp"
 
 namespace unravel::render {
@@ -14,24 +15,35 @@ constexpr float quiet_ground = 0.3f;
 
 }  // namespace
 
-SolidRenderer::Shaded::Shaded(bool fades, bool encoded)
-    : program({"frame.glsl", "light.glsl", "sky.glsl", "yield.glsl", "solid.vert"},
-              {"frame.glsl", "quads.glsl", "light.glsl", "color.glsl", "written.glsl", "solid.frag"},
-              fmt::format("#define FADES {}\n#define ENCODED {}\n", fades ? 1 : 0, encoded ? 1 : 0)),
+SolidRenderer::Shaded::Shaded(const Variant& of, bool encoded, const std::string& light)
+    : variant(of),
+      program(
+          {"frame.glsl", "light.glsl", "sky.glsl", "yield.glsl", "solid.vert"},
+          {"frame.glsl", "quads.glsl", "light.glsl", "tone.glsl", "color.glsl", "written.glsl", "solid.frag"},
+          fmt::format("#define FADES {}\n#define POLISHED {}\n#define PICTURE {}\n#define ENCODED {}\n{}",
+                      of.fades ? 1 : 0, of.polished ? 1 : 0, of.pictured ? 1 : 0, encoded ? 1 : 0, light)),
       model(program.uniform("model")),
       albedo(program.uniform("albedo")),
       gloss(program.uniform("gloss")),
-      fade_centre(program.uniform("fade_centre")) {
+      fade_centre(program.uniform("fade_centre")),
+      metal(program.uniform("metal")),
+      per_picture(program.uniform("per_picture")) {
     ShadowMaps::connect(program);
+    program.sampler("picture", 0);
 }
 
-SolidRenderer::SolidRenderer(const DrawScene& scene, bool encoded)
+std::size_t SolidRenderer::program_of(const Variant& variant, bool encoded, const std::string& light) {
+    const auto found =
+        static_cast<std::size_t>(std::ranges::find(shaded_, variant, &Shaded::variant) - shaded_.begin());
+    if (found == shaded_.size()) shaded_.emplace_back(variant, encoded, light);
+    return found;
+}
+
+SolidRenderer::SolidRenderer(const DrawScene& scene, bool encoded, const std::string& light)
     : scene_(&scene),
       centre_(0.5f * (scene.bounds_low + scene.bounds_high)),
       reach_(2.5f * (scene.bounds_high - scene.bounds_low).norm()),
-      reach_now_(reach_),
-      shaded_(false, encoded),
-      fading_(true, encoded) {
+      reach_now_(reach_) {
     for (std::size_t i = 0; i < scene.solids.size(); ++i) {
         const SolidMesh& solid = scene.solids[i];
         if (solid.plane) continue;
@@ -49,6 +61,13 @@ SolidRenderer::SolidRenderer(const DrawScene& scene, bool encoded)
         if (scene.solids[i].plane)
             parts_.push_back({Mesh(tessellate_ground(reach_)), Mesh({}), static_cast<int>(i), true,
                               linear(scene.solids[i].color)});
+    for (Part& part : parts_) {
+        const SolidMesh& solid = scene.solids[static_cast<std::size_t>(part.solid)];
+        const bool polished = solid.finish == SurfaceFinish::gloss || solid.finish == SurfaceFinish::metal;
+        const bool pictured = !solid.texture.pixels.empty();
+        part.program = program_of({part.fades, polished, pictured}, encoded, light);
+        if (pictured) upload_picture(part.texture, solid.texture, true);
+    }
 }
 
 namespace {
@@ -121,11 +140,19 @@ void SolidRenderer::draw_casters(const DrawFrame& frame, GLint transform_uniform
 void SolidRenderer::draw_shaded(const Part& part, const DrawFrame& frame) const {
     const Eigen::Matrix4f matrix = pose(part, frame);
     const Vec3f middle = matrix.block<3, 1>(0, 3);
-    const Shaded& shaded = part.fades ? fading_ : shaded_;
+    const SolidMesh& solid = scene_->solids[static_cast<std::size_t>(part.solid)];
+    const Shaded& shaded = shaded_[part.program];
     shaded.program.use();
+    if (shaded.variant.pictured) {
+        glActiveTexture(GL_TEXTURE0);
+        glBindTexture(GL_TEXTURE_2D, part.texture);
+        // A plane's mesh is stretched over what it is to reach.
+        glUniform1f(shaded.per_picture, (part.fades ? reach_now_ / reach_ : 1) / solid.texture_size);
+    }
+    glUniform1f(shaded.metal, solid.finish == SurfaceFinish::metal ? 1.f : 0.f);
     glUniformMatrix4fv(shaded.model, 1, GL_FALSE, matrix.data());
     glUniform3fv(shaded.albedo, 1, part.albedo.data());
-    glUniform1f(shaded.gloss, part.fades ? 0.15f : 1.f);
+    glUniform1f(shaded.gloss, part.fades || solid.finish == SurfaceFinish::matt ? 0.15f : 1.f);
     glUniform3fv(shaded.fade_centre, 1, middle.data());
     part.fine.draw();
 }

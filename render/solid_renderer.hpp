@@ -12,8 +12,8 @@ namespace unravel::render {
 /// Solids. Planes fade away with distance from the scene.
 class SolidRenderer {
 public:
-    /// `encoded`: shaders write sRGB.
-    SolidRenderer(const DrawScene& scene, bool encoded);
+    /// `encoded`: shaders write sRGB. `light`: of light_defines.hpp.
+    SolidRenderer(const DrawScene& scene, bool encoded, const std::string& light);
 
     /// Uploads the frame's positions of meshes that deform. Before anything else of the frame is drawn.
     void update_shapes(const DrawFrame& frame);
@@ -52,7 +52,9 @@ private:
         int solid = 0;
         bool fades = false;
         Vec3f albedo;              ///< linear
+        std::size_t program = 0;   ///< of shaded_
         CreasedMesh creased = {};  ///< of a mesh that deforms
+        GlTexture texture = {};
     };
     Eigen::Matrix4f pose(const Part& part, const DrawFrame& frame) const;
     void draw_shaded(const Part& part, const DrawFrame& frame) const;
@@ -62,14 +64,20 @@ private:
     Vec3f centre_;
     float reach_, reach_now_;
     std::vector<Part> parts_;
-    // Solids' program, and the one of planes, which fade.
-    struct Shaded {
-        GlProgram program;
-        GLint model, albedo, gloss, fade_centre;
-
-        Shaded(bool fades, bool encoded);
+    // What asks for a program of its own: planes, which fade, sharp highlights, and pictures.
+    struct Variant {
+        bool fades = false, polished = false, pictured = false;
+        bool operator==(const Variant&) const = default;
     };
-    Shaded shaded_, fading_;
+    struct Shaded {
+        Variant variant;
+        GlProgram program;
+        GLint model, albedo, gloss, fade_centre, metal, per_picture;
+
+        Shaded(const Variant& of, bool encoded, const std::string& light);
+    };
+    std::size_t program_of(const Variant& variant, bool encoded, const std::string& light);
+    std::vector<Shaded> shaded_;
 };
 
 }  // namespace unravel::render

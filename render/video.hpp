@@ -12,18 +12,19 @@
 namespace unravel::render {
 
 /// The video's ending chooses the container: .mp4 (H.264), .webm (VP9), .mkv (lossless RGB), .gif (256
-/// colours a frame). mp4 and webm are yuv420p, limited range, BT.709, converted so and tagged so. Players can
-/// jump to at least one frame in each second.
+/// colours a frame). mp4 and webm are yuv420p (yuv444p where asked), limited range, BT.709, converted so and
+/// tagged so. Players can jump to at least one frame in each second.
 struct VideoSettings {
     int width = 1280, height = 720;  ///< 16 to 16,384; even in an .mp4
     int fps_num = 30, fps_den = 1;   ///< frames per second as a fraction
     std::string codec;               ///< an encoder's name; empty: the first of the container's that opens
     int crf = -1;             ///< constant quality, smaller is better; −1: the encoder's entry in our table
     bool thin_lines = false;  ///< pictures are of coloured wires: where no crf is asked, a better one
-    std::string preset;       ///< effort, by the encoder's name for it; empty: a fast one
-    int threads = 4;          ///< bytes depend on it, so it never follows the machine
-    bool alpha = false;       ///< keep the frames' alpha; .mkv only
-    bool faststart = true;    ///< mp4: index before the frames, so that it plays while it loads
+    bool full_chroma = false;  ///< colour for every pixel (4:4:4), where the encoder can: .mp4 and .webm
+    std::string preset;        ///< effort, by the encoder's name for it; empty: a fast one
+    int threads = 4;           ///< bytes depend on it, so it never follows the machine
+    bool alpha = false;        ///< keep the frames' alpha; .mkv only
+    bool faststart = true;     ///< mp4: index before the frames, so that it plays while it loads
 };
 
 /// No encoder that can do what was asked, or a setting that none can do. what() says what can be done

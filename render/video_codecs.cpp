@@ -76,12 +76,13 @@ bool has_avx512() {
 }
 
 void set_colours(AVCodecContext& context) {
-    const bool yuv = context.pix_fmt == AV_PIX_FMT_YUV420P || context.pix_fmt == AV_PIX_FMT_NV12;
+    const bool yuv = context.pix_fmt == AV_PIX_FMT_YUV420P || context.pix_fmt == AV_PIX_FMT_YUV444P ||
+                     context.pix_fmt == AV_PIX_FMT_NV12;
     context.color_primaries = AVCOL_PRI_BT709;
     context.color_trc = yuv ? AVCOL_TRC_BT709 : AVCOL_TRC_IEC61966_2_1;
     context.colorspace = yuv ? AVCOL_SPC_BT709 : AVCOL_SPC_RGB;
     context.color_range = yuv ? AVCOL_RANGE_MPEG : AVCOL_RANGE_JPEG;
-    if (yuv) context.chroma_sample_location = AVCHROMA_LOC_LEFT;
+    if (yuv && context.pix_fmt != AV_PIX_FMT_YUV444P) context.chroma_sample_location = AVCHROMA_LOC_LEFT;
 }
 
 bool has_word(std::string_view words, std::string_view word) {
@@ -96,11 +97,13 @@ bool knows_effort(const EncoderEntry& entry, const std::string& effort) {
     return error == std::errc() && end == effort.data() + effort.size() && asked >= first && asked <= last;
 }
 
-std::string describe(const EncoderEntry& entry, const std::string& quality, int threads) {
+std::string describe(const EncoderEntry& entry, AVPixelFormat pixels, const std::string& quality,
+                     int threads) {
     const std::string_view ending = entry.ending;
-    const char* colours = ending == ".mkv"   ? "lossless RGB"
-                          : ending == ".gif" ? "256 colours a frame"
-                                             : "yuv420p, BT.709";
+    const char* colours = ending == ".mkv"               ? "lossless RGB"
+                          : ending == ".gif"             ? "256 colours a frame"
+                          : pixels == AV_PIX_FMT_YUV444P ? "yuv444p, BT.709"
+                                                         : "yuv420p, BT.709";
     return fmt::format("{} ({}{}, {} threads)", entry.codec, colours, quality, threads);
 }
 
@@ -157,6 +160,20 @@ std::vector<const EncoderEntry*> encoders_for(const Container& container) {
     return found;
 }
 
+namespace {
+
+// Frames that keep the colour of every pixel, where that is asked. What stores RGB does so anyhow.
+AVPixelFormat pixels_of(const EncoderEntry& entry, const VideoSettings& settings) {
+    const bool halved = entry.pixels == AV_PIX_FMT_YUV420P || entry.pixels == AV_PIX_FMT_NV12;
+    if (!settings.full_chroma || !halved) return entry.pixels;
+    constexpr std::string_view able[] = {"libx264", "libvpx-vp9", "libaom-av1"};
+    if (std::ranges::find(able, entry.codec) == std::end(able))
+        throw VideoError("it keeps colour at half the size only");
+    return AV_PIX_FMT_YUV444P;
+}
+
+}  // namespace
+
 OpenEncoder open_encoder(const EncoderEntry& entry, const VideoSettings& settings) {
     const AVCodec* codec = avcodec_find_encoder_by_name(entry.codec);
     if (!codec) throw VideoError("this FFmpeg was built without it");
@@ -164,7 +181,7 @@ OpenEncoder open_encoder(const EncoderEntry& entry, const VideoSettings& setting
     auto context = made<Codec>(avcodec_alloc_context3(codec));
     context->width = settings.width;
     context->height = settings.height;
-    context->pix_fmt = settings.alpha ? AV_PIX_FMT_RGB32 : entry.pixels;
+    context->pix_fmt = settings.alpha ? AV_PIX_FMT_RGB32 : pixels_of(entry, settings);
     context->time_base = {settings.fps_den, settings.fps_num};
     context->framerate = {settings.fps_num, settings.fps_den};
     context->sample_aspect_ratio = {1, 1};
@@ -185,7 +202,8 @@ OpenEncoder open_encoder(const EncoderEntry& entry, const VideoSettings& setting
         throw VideoError(log.explain(error));
     if (const auto* unknown = av_dict_get(options.entries, "", nullptr, AV_DICT_IGNORE_SUFFIX))
         throw VideoError(fmt::format("it does not know the setting {}", unknown->key));
-    return {std::move(context), describe(entry, quality, settings.threads)};
+    const AVPixelFormat pixels = context->pix_fmt;
+    return {std::move(context), describe(entry, pixels, quality, settings.threads)};
 }
 
 namespace {

@@ -61,9 +61,14 @@ void main() {
     vec3 n = seen_normal(normalize(world_normal) * (gl_FrontFacing ? 1.0 : -1.0), v);
     mat2x3 along = along_cloth();
     Woven cloth = woven(cloth_uv, pixel_on_cloth(n, v, along), gl_FrontFacing);
+#ifdef SAMPLED
+    float open = sampled_openness(world, n);
+#else
+    float open = gl_FrontFacing ? openness.x : openness.y;
+#endif
     float visible = key_visibility(world, dot(n, key_direction.xyz) >= 0.0 ? n : -n, face_normal(), 0.0, true);
     FabricLight light = fabric_light(n, tilted(n, cloth.tilt, along), v, mean_albedo[gl_FrontFacing ? 0 : 1],
-                                     gl_FrontFacing ? openness.x : openness.y, visible);
+                                     open, visible);
 #endif
 #if PICTURE
     if (gl_FrontFacing) cloth.albedo = texture(picture, vec2(0.0, 1.0) + cloth_uv * picture_scale * vec2(1.0, -1.0)).rgb;

@@ -17,4 +17,5 @@ layout(std140) uniform Frame {
     vec4 ground;
     vec4 shadow;
     vec4 viewport;
+    vec4 sky_harmonics[9];
 };

@@ -79,10 +79,43 @@ vec2 soft_visibility(sampler2D depths, vec3 at, vec2 rise, ivec4 tile, float sou
     return vec2(found.y == 0.0 ? 1.0 : lit / float(max(taps, 1)), width);
 }
 
+#ifdef SHARP
+// Whether a lamp without extent is seen from `at`, in the lamp's map, held against the receiver's own plane in the middle
+// of the texel there. The mean of many pictures smooths what a single one has of steps.
+float sharp_visibility(sampler2D depths, vec3 at, vec2 rise, ivec4 tile) {
+    vec2 size = vec2(tile.zw), place = at.xy * size, texel = floor(clamp(place, vec2(0.0), size - 1.0));
+    // Beyond the map's far end there are only receivers.
+    float plane = min(at.z + dot(rise, (texel + 0.5 - place) / size), 1.0);
+    float seen = clamp(1.3 - (plane - texelFetch(depths, tile.xy + ivec2(texel), 0).r) * size.x, 0.0, 1.0);
+    bool inside = all(greaterThan(at.xy, vec2(0.0))) && all(lessThan(at.xy, vec2(1.0)));
+    return inside ? seen : 1.0;
+}
+#endif
+
+#if defined(SAMPLED) && defined(SHARP)
+// What the sky of this one direction gives to the side of a surface that n points to: over many pictures its mean is the
+// cosine-weighted open share of the sky, as sky_openness() has it.
+float sampled_openness(vec3 p, vec3 n) {
+    float facing = dot(n, sky_direction[0].xyz), visible = 0.0;
+    if (facing > 0.0) {
+        vec3 at = (sky_matrix[0] * vec4(p + n * (shadow.z * (0.5 + 2.0 * (1.0 - facing))), 1.0)).xyz;
+        visible = sharp_visibility(sky_depth, at, rise_of(sky_matrix[0], n), ivec4(ivec2(0), textureSize(sky_depth, 0)));
+    }
+    // Directions are spread evenly over the half sphere, over which facing's mean is (1 + n.y)/4.
+    return (0.04 + 8.0 * facing * visible) / (0.04 + 2.0 * (1.0 + n.y));
+}
+#endif
+
 // Share of the key light that reaches p, whose surface faces the light along n (dot(n, l) > 0), on a plane of normal
 // `flat_n`. Where it is not `needed` the answer costs less and means nothing. `apart`: metres to the next place that is
 // asked about.
 float key_visibility(vec3 p, vec3 n, vec3 flat_n, float apart, bool needed) {
+#ifdef SHARP
+    float lean = 1.0 - dot(n, key_direction.xyz);
+    vec3 where = (shadow_matrix * vec4(p + n * shadow.x * (0.5 + 2.0 * lean), 1.0)).xyz;
+    ivec4 all = ivec4(ivec2(0), textureSize(shadow_depth, 0));
+    return needed ? sharp_visibility(shadow_depth, where, rise_of(shadow_matrix, flat_n), all) : 1.0;
+#else
 #ifdef QUADS
     ivec2 odd = ivec2(gl_FragCoord.xy) & 1;
     float part = float(odd.x + 2 * odd.y);
@@ -103,18 +136,18 @@ float key_visibility(vec3 p, vec3 n, vec3 flat_n, float apart, bool needed) {
 #else
     return seen.x;
 #endif
+#endif
 }
 
 // Light from all around at normal n, as if nothing stood in the way.
-vec3 ambient_light(vec3 n) { return mix(bounce_color.rgb, sky_color.rgb, 0.5 + 0.5 * n.y); }
-
-// Identity up to a shoulder, then highlights are compressed towards 1 without turning hue.
-// After the Khronos PBR neutral tone mapper (2024), less its toe.
-vec3 tone(vec3 color) {
-    const float shoulder = 0.72;
-    float peak = max(color.r, max(color.g, color.b));
-    if (peak <= shoulder) return color;
-    float room = 1.0 - shoulder, pressed = 1.0 - room * room / (peak + room - shoulder);
-    float white = 1.0 - 1.0 / (0.2 * (peak - pressed) + 1.0);
-    return mix(color * (pressed / peak), vec3(pressed), white);
+#ifdef SKY_IMAGE
+// From the image's harmonics. [Ramamoorthi & Hanrahan 2001, An Efficient Representation for Irradiance Environment Maps]
+vec3 ambient_light(vec3 n) {
+    vec3 light = sky_harmonics[0].rgb + sky_harmonics[1].rgb * n.y + sky_harmonics[2].rgb * n.z + sky_harmonics[3].rgb * n.x;
+    light += sky_harmonics[4].rgb * (n.x * n.y) + sky_harmonics[5].rgb * (n.y * n.z) + sky_harmonics[7].rgb * (n.x * n.z);
+    light += sky_harmonics[6].rgb * (3.0 * n.z * n.z - 1.0) + sky_harmonics[8].rgb * (n.x * n.x - n.y * n.y);
+    return max(light, vec3(0.0));
 }
+#else
+vec3 ambient_light(vec3 n) { return mix(bounce_color.rgb, sky_color.rgb, 0.5 + 0.5 * n.y); }
+#endif

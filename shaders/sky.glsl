@@ -18,6 +18,9 @@ float sky_visibility(int k, vec3 p) {
 }
 
 // Cosine-weighted open share of the sky above either side of a surface: x for the side n points to, y for the other.
+#ifdef SHARP
+vec2 sky_openness(vec3 p, vec3 n) { return vec2(0.8); }  // a draft does not look
+#else
 vec2 sky_openness(vec3 p, vec3 n) {
     vec2 open = vec2(0.04), all = vec2(0.04);
     for (int k = 0; k < SKY_DIRECTIONS; ++k) {
@@ -29,3 +32,4 @@ vec2 sky_openness(vec3 p, vec3 n) {
     }
     return open / all;
 }
+#endif

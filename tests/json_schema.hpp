@@ -16,6 +16,13 @@ inline bool is_type(const nlohmann::json& value, const std::string& type) {
     return type == "object" && value.is_object();
 }
 
+/// `type` as a schema has it: one, or a list of them.
+inline bool is_of(const nlohmann::json& value, const nlohmann::json& type) {
+    if (!type.is_array()) return is_type(value, type);
+    return std::any_of(type.begin(), type.end(),
+                       [&](const nlohmann::json& one) { return is_type(value, one); });
+}
+
 /// The part of JSON schema that ours uses.
 inline bool valid(const nlohmann::json& value, const nlohmann::json& schema) {
     const auto fits = [&](const nlohmann::json& form) { return valid(value, form); };
@@ -23,7 +30,7 @@ inline bool valid(const nlohmann::json& value, const nlohmann::json& schema) {
         return false;
     if (schema.contains("oneOf") && std::count_if(schema["oneOf"].begin(), schema["oneOf"].end(), fits) != 1)
         return false;
-    if (schema.contains("type") && !is_type(value, schema["type"])) return false;
+    if (schema.contains("type") && !is_of(value, schema["type"])) return false;
     if (schema.contains("enum") &&
         std::find(schema["enum"].begin(), schema["enum"].end(), value) == schema["enum"].end())
         return false;

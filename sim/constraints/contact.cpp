@@ -5,9 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/mesh/mesh_solid.hpp"
-#include "sim/solids/shape.hpp"
-
 namespace unravel::sim {
 
 namespace {
@@ -15,8 +12,6 @@ namespace {
 // A particle is caught when it would end this share of the offset inside: without it, a particle released at
 // rounding distance is caught again at once.
 constexpr double catch_share = 0.01;
-// A contact that has opened by this share of the offset is over.
-constexpr double open_share = 0.5;
 // Depth is corrected at most this fast [m/s].
 constexpr double correction_speed = 0.5;
 // A constraint that pulls by more than this share of the particle's weight lets go.
@@ -52,39 +47,30 @@ bool touches_solid(const Solid& solid, const DeformedSolid* deformed, const Pose
     if (std::abs(touch.gap) < no_gap) touch.gap = 0;
     touch.normal = now.linear() * surface.normal;
     touch.velocity.setZero();
-    if (!solid.motion.empty() || deformed) touch.velocity = (next * surface.carried - view.x[p]) / view.step;
+    if (solid.moves() || deformed) touch.velocity = (next * surface.carried - view.x[p]) / view.step;
     touch.pinched = false;
     // Gravity is foreseen, so that what is laid on a slope is caught before it has begun to slide. Not of
     // what has just let go: the forces on it, gravity among them, pull it off, and catching it again before
     // it has moved would weld cloth that is pulled over an edge to it.
     const bool let_go = known && known->force < 0;
     const bool pulled_off = let_go && -known->force > strong_pull * view.mass[p] * view.gravity.norm();
-    const Vec3 fall = pulled_off ? Vec3(Vec3::Zero()) : Vec3(view.step * view.gravity);
+    // What pulled it off goes on to: of a solid that brakes as it leaves, speeds alone would have it caught
+    // for as long as it brakes.
+    const double push = known ? view.step * known->force / view.mass[p] : 0.0;
+    const Vec3 fall = pulled_off ? Vec3(-push * touch.normal) : Vec3(view.step * view.gravity);
     const Vec3 coming = view.v[p] + fall - touch.velocity;
     const double ahead = touch.gap + view.step * touch.normal.dot(coming);
     const bool catches = ahead < -catch_share * solid.offset;
     if (known && !let_go) {
         touch.contact = *known;
-        // One that has opened but is about to be run over again is still a contact.
-        return catches || touch.gap < open_share * solid.offset;
+        // One that has opened but is about to be run over again is still a contact; one that would open
+        // though it is pressed as it was is none: it goes round an edge, or is thrown off.
+        const double pressed = touch.gap + view.step * (touch.normal.dot(view.v[p] - touch.velocity) - push);
+        return catches || (touch.gap < open_share * solid.offset && pressed < catch_share * solid.offset);
     }
     // No force has been felt yet; friction reckons with what it takes to stop the particle at the surface.
     touch.contact.force = view.mass[p] * std::max(-ahead, 0.0) / (view.step * view.step);
     return catches;
-}
-
-SolidReach reach_of(const Solid& solid, const Pose& now, const Pose& next) {
-    SolidReach reach;
-    reach.now = now.translation();
-    reach.next = next.translation();
-    reach.normal = now.linear().col(1);
-    reach.radius = law_of(solid.shape).reach(solid);
-    reach.plane = solid.shape == Shape::plane && solid.motion.empty();
-    reach.travel = (reach.next - reach.now).norm();
-    // Frobenius' norm of the difference is 2√2 sin(θ/2): more than θ for turns below 2.2, and at most 2√2.
-    reach.turn = std::min((next.linear() - now.linear()).norm(), 1.0);
-    reach.skin = (1.0 + open_share) * solid.offset;
-    return reach;
 }
 
 // Touches of one particle.
@@ -123,6 +109,27 @@ void decide_friction(const Friction& friction, const StepView& view, Touch& touc
     }
 }
 
+// Whether two solids pinch a particle: they leave it less room than it takes.
+bool opposed(const Touch& a, const Touch& b) {
+    return a.normal.dot(b.normal) < pinch_cosine && a.gap + b.gap < 0;
+}
+
+// Between two solids that leave it room a particle touches the nearer one.
+void drop_loose(std::vector<Touch>& touches) {
+    std::vector<Touch> kept;
+    kept.reserve(touches.size());
+    for_each_group(touches, [&](Group group) {
+        for (const Touch& touch : group) {
+            const bool loose = std::ranges::any_of(group, [&](const Touch& other) {
+                const bool faces = touch.normal.dot(other.normal) < pinch_cosine && !opposed(touch, other);
+                return faces && (other.gap < touch.gap || (other.gap == touch.gap && &other < &touch));
+            });
+            if (!loose) kept.push_back(touch);
+        }
+    });
+    touches = std::move(kept);
+}
+
 // What the particle must do along one touch's normal, and how deep it sits.
 Vec3 closing(const Touch& touch, double h) {
     return -std::max(touch.gap, 0.0) / h * touch.normal;
@@ -136,13 +143,15 @@ bool same_direction(const Vec3& a, const Vec3& b) {
     return a == b || a.dot(b) > parallel_cosine;
 }
 
-// Directions that a group takes away, as columns; parallel ones count once.
+// Directions that a group takes away, as columns; parallel ones count once, and so do those of a pinch.
 Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> taken_directions(Group group) {
     Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> N(3, 0);
     for (const Touch& touch : group) {
         if (N.cols() == 3) break;
         bool known = false;
-        for (Eigen::Index k = 0; k < N.cols(); ++k) known = known || same_direction(N.col(k), touch.normal);
+        for (Eigen::Index k = 0; k < N.cols(); ++k)
+            known = known || same_direction(N.col(k), touch.normal) ||
+                    (touch.pinched && same_direction(N.col(k), -touch.normal));
         if (known) continue;
         N.conservativeResize(3, N.cols() + 1);
         N.col(N.cols() - 1) = touch.normal;
@@ -187,19 +196,37 @@ void constrain_single(const Friction& friction, const StepView& view, Touch& tou
     constraints.add(c);
 }
 
+// Along a direction of a pinch: the speed of the solids, and the way to the middle between them.
+void pinch_along(const StepView& view, Group group, const Vec3& n, const Vec3& from_base, double& speed,
+                 double& depth) {
+    double ride = 0, way = 0;
+    int sides = 0;
+    for (const Touch& touch : group) {
+        if (!same_direction(n, touch.normal) && !same_direction(n, -touch.normal)) continue;
+        ride += n.dot(from_base + carry(view) * touch.velocity);
+        way -= touch.gap * n.dot(touch.normal);
+        ++sides;
+    }
+    const double limit = correction_speed * view.h;
+    speed = ride / sides;
+    depth = std::clamp(way / sides, -limit, limit);
+}
+
 void constrain_group(std::span<const Solid> solids, const StepView& view, Group group,
                      Constraints& constraints, std::span<Vec3> base, std::span<Vec3> impulse) {
     const std::uint32_t p = group.front().contact.particle;
-    bool held = false;
+    bool held = false, rough = false;
     for (Touch& touch : group) {
         decide_friction(solids[touch.contact.solid].friction, view, touch);
         held = held || touch.contact.held;
-        for (const Touch& other : group)
-            touch.pinched = touch.pinched || touch.normal.dot(other.normal) < pinch_cosine;
+        for (const Touch& other : group) {
+            touch.pinched = touch.pinched || opposed(touch, other);
+            rough = rough || (touch.pinched && solids[other.contact.solid].friction.static_ > 0);
+        }
     }
     const bool pinched = std::any_of(group.begin(), group.end(), [](const Touch& t) { return t.pinched; });
     auto N = taken_directions(group);
-    const bool all = held || pinched || (N.cols() == 3 && std::abs(Mat3(N).determinant()) > 1e-6);
+    const bool all = held || (pinched && rough) || (N.cols() == 3 && std::abs(Mat3(N).determinant()) > 1e-6);
 
     Constraint c;
     c.particle = p;
@@ -233,6 +260,11 @@ void constrain_group(std::span<const Solid> solids, const StepView& view, Group 
         for (const Touch& touch : group) {
             for (Eigen::Index k = 0; k < N.cols(); ++k) {
                 if (!same_direction(N.col(k), touch.normal)) continue;
+                // Smooth solids hold what they pinch in the middle between them, and let it slide there.
+                if (touch.pinched) {
+                    pinch_along(view, group, N.col(k), from_base, speed[k], depth[k]);
+                    continue;
+                }
                 speed[k] = std::max(speed[k], touch.normal.dot(from_base + carry(view) * touch.velocity +
                                                                closing(touch, view.h)));
                 depth[k] = std::max(depth[k], depth_correction(touch, view.h).norm());
@@ -292,42 +324,6 @@ Contact judge(const Friction& friction, const Touch& touch, const Vec3& force, d
 
 }  // namespace
 
-void pose_solids(std::span<const Solid> solids, double t, double h, SolidPoses& out) {
-    out.now.clear();
-    out.next.clear();
-    out.reach.clear();
-    for (const Solid& solid : solids) {
-        out.now.push_back(solid_pose(solid, t));
-        out.next.push_back(solid_pose(solid, t + h));
-        out.reach.push_back(reach_of(solid, out.now.back(), out.next.back()));
-    }
-    const auto deforms = [](const Solid& solid) { return solid.geometry && solid.geometry->deforms(); };
-    if (std::none_of(solids.begin(), solids.end(), deforms)) return;
-    out.deformed.resize(solids.size());
-    for (std::size_t s = 0; s < solids.size(); ++s) {
-        if (!deforms(solids[s])) continue;
-        const MeshSolid& mesh = *solids[s].geometry;
-        DeformedSolid& body = out.deformed[s];
-        if (body.now.empty()) body.now = body.next = mesh.tree;
-        std::swap(body.now, body.next);
-        std::swap(body.positions_now, body.positions_next);
-        if (body.t_next != t) {
-            mesh.positions_at(t, body.positions_now);
-            body.now.refit(body.positions_now);
-        }
-        mesh.positions_at(t + h, body.positions_next);
-        body.next.refit(body.positions_next);
-        body.t_next = t + h;
-        body.moved = 0;
-        for (std::size_t v = 0; v < body.positions_now.size(); ++v)
-            body.moved = std::max(body.moved, (body.positions_next[v] - body.positions_now[v]).norm());
-    }
-}
-
-const DeformedSolid* SolidPoses::of(const Solid& solid, std::size_t index) const {
-    return solid.geometry && solid.geometry->deforms() ? &deformed[index] : nullptr;
-}
-
 void find_touches(std::span<const Solid> solids, const SolidPoses& poses, const StepView& view,
                   std::span<const Contact> known, const Constraints& pinned,
                   std::vector<std::vector<Touch>>& found, std::vector<Touch>& out) {
@@ -363,6 +359,10 @@ void find_touches(std::span<const Solid> solids, const SolidPoses& poses, const 
 
 void constrain_touches(std::span<const Solid> solids, const StepView& view, std::vector<Touch>& touches,
                        Constraints& constraints, std::span<Vec3> base, std::span<Vec3> impulse) {
+    const bool several = std::ranges::adjacent_find(touches, {}, [](const Touch& touch) {
+                             return touch.contact.particle;
+                         }) != touches.end();
+    if (several) drop_loose(touches);
     for_each_group(touches, [&](Group group) {
         if (group.size() == 1) {
             Touch& touch = group.front();

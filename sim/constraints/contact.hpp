@@ -16,6 +16,9 @@ namespace unravel::sim {
 /// loses the direction of the solid's normal; static friction takes all three. Two contacts take two
 /// directions, three or a pinch between two solids ("flypapering", Baraff, Witkin & Kass 2003) all.
 
+/// A contact that has opened by this share of the solid's offset is over.
+inline constexpr double open_share = 0.5;
+
 /// What tells at once that a particle is far from a solid: the ball that holds it, or a plane's half space.
 struct SolidReach {
     bool plane = false;

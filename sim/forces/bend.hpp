@@ -12,9 +12,12 @@
 
 namespace unravel::sim {
 
-/// Bend springs between interlaced particles (distance 2 along rows, columns and diagonals) after Choi & Ko,
-/// "Stable but responsive cloth" (2002), Sec. 4.2. Where the strip between its ends is shorter than flat, it
-/// is a circular arc of its flat length and pushes its ends apart; it never pulls.
+/// Bend springs after Choi & Ko, "Stable but responsive cloth" (2002), Sec. 4.2. Where the strip between its
+/// ends is shorter than flat, it is a circular arc of its flat length and pushes its ends apart; it never
+/// pulls. As the paper has them they join interlaced particles (distance 2 along rows, columns and diagonals)
+/// and are all of the cloth's bending. Beside bending that is linear in curvature (curvature.hpp) they join
+/// neighbours along threads, where they see only what the particles' own places don't: that the cloth between
+/// them buckles.
 struct BendSprings {
     std::vector<std::uint32_t> i, j;  ///< (springs) particles, i < j
     Coefficients rest;                ///< (springs) L [m], the flat length
@@ -89,7 +92,7 @@ double bend_energy(double length, double rest, double stiffness, double slope, d
 /// Length at which the two pushes are equal, or 0 if the linear one is the weaker everywhere [m].
 double bend_crossing(double rest, double stiffness, double slope);
 
-/// Fills `limit` for step size h where it is not that already. `mass` is (particles) [kg].
+/// Fills `limit` for step size h, 0: without any, where it is not that already. `mass` is (particles) [kg].
 void limit_bend(const BendSprings& springs, std::span<const double> mass, double h, BendLimit& limit);
 
 /// Force on each spring's particle i (on j its opposite) [N]. (springs)

@@ -48,19 +48,34 @@ void extension_forces(const ExtensionSprings& springs, std::span<const double> m
     });
 }
 
-bool mark_taut(const ExtensionSprings& springs, std::span<const Vec3> end, const ExtensionForces& forces,
-               std::vector<std::uint8_t>& taut) {
+bool mark_missed(const ExtensionSprings& springs, std::span<const double> mass, double h,
+                 const Splitting& splitting, std::span<const Vec3> end, const ExtensionForces& forces,
+                 double strain, std::vector<std::uint8_t>& taut) {
     taut.resize(springs.size(), 0);
     std::vector<std::uint8_t> found(chunk_count(springs.size()), 0);
     parallel_chunks(springs.size(), [&](std::size_t chunk, std::size_t first, std::size_t last) {
         for (std::size_t s = first; s < last; ++s) {
-            if (taut[s] || (!forces.state.empty() && forces.state[s] != SpringState::inactive)) continue;
-            const double rest = springs.rest[s];
-            if (!is_taut((end[springs.j[s]] - end[springs.i[s]]).squaredNorm(), rest * rest)) continue;
-            taut[s] = found[chunk] = 1;
+            if (taut[s] || forces.state[s] != SpringState::inactive) continue;
+            const std::uint32_t i = springs.i[s], j = springs.j[s];
+            const double rest = springs.rest[s], squared = (end[j] - end[i]).squaredNorm();
+            if (!is_taut(squared, rest * rest)) continue;
+            const double of_spring =
+                kappa_between(h, mass[i], mass[j], springs.stiffness[s], springs.damping[s]);
+            if (is_explicit(of_spring, splitting.threshold(s < springs.stretch_count))) continue;
+            taut[s] = 1;
+            const double longer = (1 + strain) * rest;
+            if (is_taut(squared, longer * longer)) found[chunk] = 1;
         }
     });
     return std::find(found.begin(), found.end(), 1) != found.end();
+}
+
+void mark_taut(const ExtensionSprings& springs, std::span<const Vec3> end, std::vector<std::uint8_t>& taut) {
+    taut.resize(springs.size());
+    parallel_each(springs.size(), [&](std::size_t s) {
+        const double rest = springs.rest[s];
+        taut[s] = is_taut((end[springs.j[s]] - end[springs.i[s]]).squaredNorm(), rest * rest);
+    });
 }
 
 Adjacency adjacency_of(std::size_t particles, std::span<const std::uint32_t> i,

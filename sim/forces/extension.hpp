@@ -82,9 +82,13 @@ void extension_forces(const ExtensionSprings& springs, std::span<const double> m
                       ExtensionForces& out, std::span<const std::uint8_t> taut = {},
                       std::span<const Vec3> ahead = {});
 
-/// Marks springs longer than L at `end` (particles) among those inactive in `forces`, or, where `forces` is
-/// empty, among all; keeps earlier marks. True if it marked any that was not.
-bool mark_taut(const ExtensionSprings& springs, std::span<const Vec3> end, const ExtensionForces& forces,
-               std::vector<std::uint8_t>& taut);
+/// Marks springs of a step of h seconds that are implicit but were inactive in `forces` and are longer than L
+/// at `end`, (particles); keeps earlier marks. True if it marked one that is longer than (1 + strain) L.
+bool mark_missed(const ExtensionSprings& springs, std::span<const double> mass, double h,
+                 const Splitting& splitting, std::span<const Vec3> end, const ExtensionForces& forces,
+                 double strain, std::vector<std::uint8_t>& taut);
+
+/// Marks springs longer than L at `end`, (particles).
+void mark_taut(const ExtensionSprings& springs, std::span<const Vec3> end, std::vector<std::uint8_t>& taut);
 
 }  // namespace unravel::sim

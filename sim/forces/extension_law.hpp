@@ -55,10 +55,12 @@ UNRAVEL_LAW double kappa_between(double h, double mass_i, double mass_j, double 
 }
 
 /// Which springs are implicit (paper Sec. 3.5): κ = (h/m)(k_s h + 2 k_d), Eq. (7), m the smaller mass. A
-/// spring is explicit where κ ≤ threshold; +∞ makes all explicit, a negative one all implicit.
+/// spring is explicit where κ ≤ threshold; +∞ makes all explicit, a negative one all implicit. Bending has a
+/// κ of its own (sim/forces/curvature.hpp).
 struct Splitting {
     double stretch_threshold = 0.2;
     double shear_threshold = 0.2;
+    double bend_threshold = 0.2;
     double threshold(bool is_stretch) const { return is_stretch ? stretch_threshold : shear_threshold; }
     friend bool operator==(const Splitting&, const Splitting&) = default;
 };

@@ -25,14 +25,21 @@ struct SpringRows {
 ///   anti      (i+1, j) — (i, j+1)      bend_anti      (i+2, j) — (i, j+2)
 ///
 /// The lists keep i < j for every spring. So in a tube the springs along u that close the ring (the last of
-/// each row of u, the last two of bend_u) are stored from `to` to `from`; all others as drawn. Bend springs
-/// are either there for the whole cloth, some perhaps of zero stiffness, or not at all.
+/// each row of u, the last two of bend_u) are stored from `to` to `from`; all others as drawn. Shear and
+/// bend springs are either there for the whole cloth, some perhaps of zero stiffness, or not at all.
+///
+/// Where bending goes by curvature (`curvature` is its list; sim/forces/curvature.hpp), bend_u and bend_v are
+/// the arcs between neighbours, and there are, beginning at (i, j),
+///
+///   curve_u   (i, j), (i+1, j), (i+2, j)      twist     (i, j), (i+1, j), (i+1, j+1), (i, j+1)
+///   curve_v   (i, j), (i, j+1), (i, j+2)
 struct GridSprings {
     std::uint32_t particle = 0;    ///< the grid's first; particle (i, j) is particle + j·nu + i
     std::uint32_t nu = 0, nv = 0;  ///< particles along u and v
     bool tube = false;             ///< closed in u
     SpringRows u, v, diagonal, anti;
     SpringRows bend_u, bend_v, bend_diagonal, bend_anti;
+    SpringRows curve_u, curve_v, twist;
     std::uint32_t count() const { return nu * nv; }
     std::uint32_t at(std::uint32_t i, std::uint32_t j) const {
         return particle + j * nu + (tube && i >= nu ? i - nu : i);

@@ -7,10 +7,9 @@ const Scheme backward_euler{.name = "implicit",
                             .order = 1,
                             .splitting =
                                 [](double) {
-                                    return Splitting{always_implicit, always_implicit};
+                                    return Splitting{always_implicit, always_implicit, always_implicit};
                                 },
-                            .begin = begin_euler,
-                            .implicit_bend = true};
+                            .begin = begin_euler};
 
 void begin_euler(const ClothState& state, double h, Stage& stage) {
     stage.h = h;

@@ -26,11 +26,12 @@ void begin_trapezoidal(const ClothState& state, double h, Stage& stage) {
 const Scheme bdf2{.name = "bdf2",
                   .order = 2,
                   .splitting =
-                      [](double) {
-                          return Splitting{always_implicit, always_implicit};
+                      [](double threshold) {
+                          return Splitting{always_implicit, always_implicit, 0.6 * threshold};
                       },
                   .begin = begin_bdf2,
-                  .multistep = true};
+                  .multistep = true,
+                  .explicit_bound = 3.2};
 
 /// With ω = h/h_previous,
 ///   x̃ = ((1 + ω)² x − ω² x_previous)/(1 + 2ω),  ṽ alike,  h̃ = h (1 + ω)/(1 + 2ω).

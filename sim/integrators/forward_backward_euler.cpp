@@ -6,7 +6,7 @@ namespace unravel::sim {
 // stage of Eq. (5) is just that, and its matrix is M.
 const Scheme forward_backward_euler{"explicit", 1,
                                     [](double) {
-                                        return Splitting{always_explicit, always_explicit};
+                                        return Splitting{always_explicit, always_explicit, always_explicit};
                                     },
                                     begin_euler};
 

@@ -8,10 +8,9 @@ const Scheme newton_euler{.name = "newton",
                           .order = 1,
                           .splitting =
                               [](double) {
-                                  return Splitting{always_implicit, always_implicit};
+                                  return Splitting{always_implicit, always_implicit, always_implicit};
                               },
                           .begin = begin_euler,
-                          .iterates = true,
-                          .implicit_bend = true};
+                          .iterates = true};
 
 }  // namespace unravel::sim

@@ -41,7 +41,8 @@ struct Stage {
 struct Scheme {
     const char* name;
     int order;  ///< of convergence where the forces are smooth
-    /// Which κ (7) each family bears explicitly; `threshold` is the adaptive schemes'.
+    /// Which κ (7) each family bears explicitly; `threshold` is the adaptive schemes', and bending's wherever
+    /// some of it may be explicit and some not.
     Splitting (*splitting)(double threshold);
     /// Fills the stage of a step of h seconds.
     void (*begin)(const ClothState& state, double h, Stage& stage);
@@ -50,7 +51,6 @@ struct Scheme {
     /// h²λ + 2hμ that explicit springs may reach, λ and μ eigenvalues of M⁻¹K and M⁻¹D; see
     /// explicit_limit.hpp.
     double explicit_bound = 4;
-    bool implicit_bend = false;  ///< bend springs get their Jacobian too (Choi & Ko 2002; see bend.hpp)
 };
 
 /// The scheme of a choice.

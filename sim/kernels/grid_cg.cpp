@@ -169,7 +169,7 @@ bool solve_on_grid(GridSystem& system, bool multigrid, std::uint32_t patience, c
 
     while (residual > target && out.iterations < limit) {
         const std::uint32_t first = out.iterations;
-        conjugate_gradients(cg, cg.begin(residual), aim * target, until, out.iterations);
+        conjugate_gradients(cg, cg.begin(residual), aim * target, until, out.iterations, options.stop);
         out.rvm += static_cast<std::uint64_t>(out.iterations - first) * system.rows;
         cg.take_correction();
         const double before = residual;

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/stop.hpp"
+
 namespace unravel::sim {
 
 /// Preconditioned conjugate gradients (Hestenes & Stiefel 1952) on what `problem` holds: x, r = b − A x, q, a
 /// direction p and a preconditioner M. It stops when the residual is no larger than `target`, `iterations`
-/// reaches `until`, or rounding leaves no direction to go; returns the last residual.
+/// reaches `until`, or rounding leaves no direction to go; returns the last residual. Throws Stopped.
 ///   double precondition()          z = M⁻¹ r; r·z
 ///   double multiply(double beta)   p = z + β p, or z where β = 0; q = A p; p·q
 ///   double measure(double alpha)   x += α p, r −= α q; ‖r‖² in the stopping rule's norm
@@ -17,9 +19,10 @@ namespace unravel::sim {
 ///   iterations  counts on from what it is
 template <typename Problem>
 double conjugate_gradients(Problem& problem, double residual, double target, std::uint32_t until,
-                           std::uint32_t& iterations) {
+                           std::uint32_t& iterations, StopFlag stop = nullptr) {
     double before = 0;
     while (residual > target && iterations < until) {
+        heed(stop);
         const double rho = problem.precondition();
         if (!(rho > 0)) break;
         const double curvature = problem.multiply(before > 0 ? rho / before : 0.0);

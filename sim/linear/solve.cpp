@@ -163,7 +163,8 @@ ComponentSolve solve_component(const ComponentRows& rows, const SolveOptions& op
     while (residual > target && result.iterations < limit) {
         if (method->build) method->build(rows);
         problem.take(*method);
-        residual = conjugate_gradients(problem, residual, target, std::min(until, limit), result.iterations);
+        residual = conjugate_gradients(problem, residual, target, std::min(until, limit), result.iterations,
+                                       options.stop);
         // Rounding may leave cycles, in single precision, without a direction to go.
         const bool gives_way = result.iterations >= until || method->kind == Preconditioner::aggregation;
         if (!other || !gives_way) break;

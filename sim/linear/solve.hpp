@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/stop.hpp"
 #include "sim/constraints/constraints.hpp"
 #include "sim/linear/aggregates.hpp"
 #include "sim/linear/components.hpp"
@@ -21,6 +22,7 @@ struct SolveOptions {
     double tolerance =
         1e-3;  ///< on ‖r‖ / ‖Sb‖, both in the norm of P⁻¹ (constrained block), for every preconditioner
     int max_iterations = 2000;  ///< per component
+    StopFlag stop = nullptr;    ///< heeded in every iteration, and by who calls the solver in every step
 };
 
 /// What solving one component took.
@@ -60,7 +62,7 @@ inline std::uint32_t least_rows_of_aggregation(Preconditioner kind) {
 /// iteration of one multiply. Components that A leaves to others are passed over. Preconditioners that need a
 /// grid (stencil_block, multigrid) are the constrained block here. A large component gets cycles by
 /// aggregation where `aggregation` asks for them, or where `automatic` expects the constrained block to take
-/// long; if one takes longer than it was expected to, the other takes over, once.
+/// long; if one takes longer than it was expected to, the other takes over, once. Throws Stopped.
 ///   guess   (particles)   [m/s]
 ///   out     (components)
 void solve(const System& A, const Components& components, const Constraints& constraints,

@@ -39,7 +39,8 @@ void MeshSolid::positions_at(double t, std::vector<Vec3>& out) const {
         out = rest;
         return;
     }
-    double since = t - start;
+    // Before frame 0, while a scene settles, nothing moves.
+    double since = std::max(t, 0.0) - start;
     if (period > 0 && since > 0) since = std::fmod(since, period);
     if (pose) {
         pose(since, out);

@@ -4,8 +4,10 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
+#include "sim/mesh/start_line.hpp"
 #include "sim/scene/scene.hpp"
 
 namespace unravel::sim {
@@ -17,14 +19,46 @@ Eigen::Matrix3d rotation_matrix(const Vec3& degrees);
 /// u = 0 again; a direction of one particle has it in the middle, at 1/2.
 Vec2 particle_uv(const Cloth& cloth, int i, int j);
 
+/// How a cloth is turned: to where its front looks, then by its rotation.
+Eigen::Matrix3d cloth_rotation(const Cloth& cloth);
+
+/// Where a cloth's particles are at the start. What all have in common is worked out once.
+class StartPlaces {
+public:
+    /// `cloth` must outlive it.
+    explicit StartPlaces(const Cloth& cloth);
+
+    /// Where the particle at (i, j) is placed [m], without jitter and wrinkles.
+    Vec3 placed(int i, int j) const;
+    /// Where it starts [m]: placed, and displaced by both along its normal.
+    Vec3 started(int i, int j) const;
+    /// No particle is displaced by more [m].
+    double most_displaced() const;
+
+private:
+    struct Spot {
+        Vec3 at, normal;  ///< before the cloth is turned and moved
+    };
+    Spot unrotated(int i, int j) const;
+
+    const Cloth& cloth_;
+    Eigen::Matrix3d rotation_;
+    std::optional<StartLine> line_;  ///< of a sheet that does not lie flat
+};
+
 /// Where the particle is placed [m], without jitter.
 Vec3 placed_particle(const Cloth& cloth, int i, int j);
 
-/// Where it starts [m]: placed, and displaced by the cloth's jitter along its unrotated normal.
+/// Where it starts [m]: placed, and displaced by the cloth's jitter and wrinkles along its normal.
 Vec3 started_particle(const Cloth& cloth, int i, int j);
 
 /// As placed_particle(), all of them, at j · nu + i.
 std::vector<Vec3> placed_particles(const Cloth& cloth);
+
+/// Whether the particle `index` of a row is among `count` that are chosen evenly along it: its ends, and as
+/// far as whole numbers allow equal distances between; of a ring equal ones all around. All where there are
+/// no more of them, or `count` is 0.
+bool evenly_chosen(int index, int particles, int count, bool ring);
 
 /// Whether a pin catches the particle at (i, j); a mesh's vertex i is at (i, 0). One on the border of a box
 /// or disc, to within 1e-9, is caught.

@@ -14,9 +14,10 @@ enum class Criterion {
     strain,    ///< a stretch spring is longer than any cloth gets: the run has exploded or the cloth is torn
     energy,    ///< mechanical energy grew by more than anything puts in
     unsolved,  ///< conjugate gradients ended far from the solution
+    pinched,   ///< what is prescribed drives cloth through cloth
 };
 
-/// "not_finite", "strain", "energy", "unsolved".
+/// "not_finite", "strain", "energy", "unsolved", "pinched".
 const char* criterion_name(Criterion criterion);
 
 /// Why a step can't go on.

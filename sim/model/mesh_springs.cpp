@@ -5,6 +5,8 @@
 #include <span>
 
 #include "sim/model/mesh_bends.hpp"
+#include "sim/model/mesh_curvature.hpp"
+#include "sim/model/moduli.hpp"
 
 namespace unravel::sim {
 
@@ -36,6 +38,37 @@ double edge_shape(const MeshCloth& mesh, const Cell& cell, const MeshCloth::Edge
     const double opposite = (mesh.rest[d] - mesh.rest[c]).norm();
     return area / ((length + opposite) * length);
 }
+
+// Mean length of an edge and the one opposite over what a square of the cell's area has: √(a/b) of a
+// rectangle, and its fourth power.
+double quad_square(const MeshCloth& mesh, const Cell& cell, std::size_t corner) {
+    const auto at = [&](std::size_t k) { return mesh.rest[cell.vertex[(corner + k) % 4]]; };
+    const double mean = 0.5 * ((at(1) - at(0)).norm() + (at(2) - at(3)).norm()), area = mesh.area(cell);
+    return mean * mean * mean * mean / (area * area);
+}
+
+// The modulus in the direction of the edge that begins at a corner of a quad.
+double stretch_along(const MeshCloth& mesh, const Cell& cell, std::size_t corner, const Material& m) {
+    const std::uint32_t a = cell.vertex[corner], b = cell.vertex[(corner + 1) % 4];
+    const double u = share_of_u(mesh, cell, {std::min(a, b), std::max(a, b), {}});
+    return u * m.stretch[0] + (1 - u) * m.stretch[1];
+}
+
+// The share of the shear modulus that a quad's diagonals have: as its more demanding edges leave it.
+double quad_share(const MeshCloth& mesh, const Cell& cell, const Material& material) {
+    double share = 1;
+    for (const std::size_t corner : {0u, 1u}) {
+        Material along = material;
+        along.stretch = {stretch_along(mesh, cell, corner, material),
+                         stretch_along(mesh, cell, corner + 1, material)};
+        share = std::min(share, diagonals_share(along, quad_square(mesh, cell, corner)));
+    }
+    return share;
+}
+
+// What of an edge's k/E a triangle has of E A/L²: isotropic cloth of Young's modulus E is stiffer by 9/8
+// where it is held in its width.
+constexpr double held_triangle = 8.0 / 9.0;
 
 }  // namespace
 
@@ -86,12 +119,30 @@ void add_mesh_stretch(const Cloth& cloth, std::uint32_t first, ExtensionSprings&
         for (const std::uint32_t c : edge.cell) {
             if (c == no_index) continue;
             const Cell& cell = mesh.cells[c];
-            const double shape = edge_shape(mesh, cell, edge), u = share_of_u(mesh, cell, edge);
-            stiffness += shape * (u * m.stretch[0] + (1 - u) * m.stretch[1]);
-            damping += shape * (u * m.stretch_damping[0] + (1 - u) * m.stretch_damping[1]);
+            const bool triangle = cell.corners == 3;
+            const double u = share_of_u(mesh, cell, edge);
+            const double shape = (triangle ? held_triangle : 1.0) * edge_shape(mesh, cell, edge);
+            const double of_stretch = shape * (u * m.stretch[0] + (1 - u) * m.stretch[1]);
+            const double of_damping = shape * (u * m.stretch_damping[0] + (1 - u) * m.stretch_damping[1]);
+            // What a quad's diagonals resist already is not its edges' to resist.
+            const Material& inside = triangle ? m : materials.at(cell.vertex);
+            const double of_diagonals =
+                triangle ? 0 : 0.5 * quad_share(mesh, cell, inside) / edge_shape(mesh, cell, edge);
+            stiffness += std::max(of_stretch - of_diagonals * inside.shear, threads_share * of_stretch);
+            damping += std::max(of_damping - of_diagonals * inside.shear_damping, 0.0);
         }
         springs.add(first + edge.a, first + edge.b, mesh.length(edge), stiffness, damping);
     }
+}
+
+void note_mesh_shear(const Cloth& cloth, std::vector<std::string>& notes) {
+    const MeshCloth& mesh = *cloth.geometry;
+    const MeshMaterials materials(cloth);
+    double least = 1;
+    for (const Cell& cell : mesh.cells) {
+        if (cell.corners == 4) least = std::min(least, quad_share(mesh, cell, materials.at(cell.vertex)));
+    }
+    if (least < 1) notes.push_back(weak_shear_note(cloth, least, "the mesh"));
 }
 
 void add_mesh_shear(const Cloth& cloth, std::uint32_t first, ExtensionSprings& springs) {
@@ -102,9 +153,35 @@ void add_mesh_shear(const Cloth& cloth, std::uint32_t first, ExtensionSprings& s
         const Material& m = materials.at(cell.vertex);
         for (const std::size_t k : {0u, 1u}) {
             const std::uint32_t a = cell.vertex[k], b = cell.vertex[k + 2];
-            const double rest = (mesh.rest[b] - mesh.rest[a]).norm(), shape = rest * rest / mesh.area(cell);
+            const double rest = (mesh.rest[b] - mesh.rest[a]).norm();
+            const double shape = quad_share(mesh, cell, m) * rest * rest / mesh.area(cell);
             springs.add(first + a, first + b, rest, m.shear * shape, m.shear_damping * shape);
         }
+    }
+}
+
+void add_mesh_curvature(const Cloth& cloth, std::uint32_t first, CurvatureStencils& stencils) {
+    const MeshMaterials materials(cloth);
+    for (MeshCurvature& s : curvature_of(*cloth.geometry)) {
+        const std::span vertices(s.vertex.data(), s.count);
+        const double stiffness = materials.at(vertices).bend * s.stiffness;
+        if (stiffness <= 0) continue;
+        for (std::uint32_t& vertex : vertices) vertex += first;
+        stencils.add(vertices, std::span(s.weight.data(), s.count), stiffness);
+    }
+}
+
+void add_mesh_arcs(const Cloth& cloth, std::uint32_t first, BendSprings& bends) {
+    const MeshCloth& mesh = *cloth.geometry;
+    const MeshMaterials materials(cloth);
+    for (const MeshCloth::Edge& edge : mesh.edges) {
+        const Material& m = materials.at(std::array{edge.a, edge.b});
+        const double length = mesh.length(edge);
+        double width = 0;
+        for (const std::uint32_t c : edge.cell)
+            if (c != no_index) width += edge_shape(mesh, mesh.cells[c], edge) * length;
+        if (m.bend * width > 0)
+            bends.add(first + edge.a, first + edge.b, length, m.bend * width, m.buckling_strain);
     }
 }
 

@@ -1,5 +1,7 @@
 #include "sim/model/model.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,8 +9,11 @@
 
 #include "sim/mesh/mesh_cloth.hpp"
 #include "sim/mesh/placement.hpp"
+#include "sim/model/contact_model.hpp"
 #include "sim/model/mesh_links.hpp"
 #include "sim/model/mesh_springs.hpp"
+#include "sim/model/moduli.hpp"
+#include "sim/solids/motion.hpp"
 
 namespace unravel::sim {
 
@@ -83,6 +88,12 @@ SpringRows add_rows(const Grid& g, std::size_t first, std::array<int, 2> count, 
     return rows;
 }
 
+// The share of a cell's shear modulus that its diagonals have.
+double shear_share(const Grid& g, int i, int j) {
+    const double along = g.a / g.b;
+    return diagonals_share(material_at(g.cloth, g.uv(i + 0.5, j + 0.5)), along * along);
+}
+
 void add_stretch(const Grid& g, ExtensionSprings& springs, GridSprings& grid) {
     const auto along = [&](int axis) {
         return [&, axis](int i, int j, std::uint32_t p, std::uint32_t q) {
@@ -90,31 +101,97 @@ void add_stretch(const Grid& g, ExtensionSprings& springs, GridSprings& grid) {
             const double rest = axis == 0 ? g.a : g.b;
             const double shape = (axis == 0 ? g.width_v(j) : g.width_u(i)) / rest;
             const auto k = static_cast<std::size_t>(axis);
-            springs.add(p, q, rest, m.stretch[k] * shape, m.stretch_damping[k] * shape);
+            // What the diagonals of the cells on both sides resist already is not the threads' to resist.
+            double stiffness = m.stretch[k] * shape, damping = m.stretch_damping[k] * shape;
+            const double least = threads_share * stiffness;
+            for (const int side : {-1, 0}) {
+                const int u = axis == 0 ? i : i + side, v = axis == 0 ? j + side : j;
+                if ((u < 0 && !g.patch.tube) || v < 0 || u >= g.patch.cells_u() || v >= g.patch.cells_v())
+                    continue;
+                const int cell = u < 0 ? g.patch.cells_u() - 1 : u;
+                const Material& beside = material_at(g.cloth, g.uv(cell + 0.5, v + 0.5));
+                const double share = shear_share(g, cell, v) * (axis == 0 ? g.a / g.b : g.b / g.a);
+                stiffness -= share * beside.shear;
+                damping -= share * beside.shear_damping;
+            }
+            springs.add(p, q, rest, std::max(stiffness, least), std::max(damping, 0.0));
         };
     };
     grid.u = add_rows(g, springs.size(), {g.patch.cells_u(), g.nv()}, {0, 0}, {1, 0}, along(0));
     grid.v = add_rows(g, springs.size(), {g.nu(), g.patch.cells_v()}, {0, 0}, {0, 1}, along(1));
 }
 
+bool resists_shear(const Material& m) {
+    return m.shear > 0 || m.shear_damping > 0;
+}
+
 void add_shear(const Grid& g, ExtensionSprings& springs, GridSprings& grid) {
+    if (!resists_shear(g.cloth.material) &&
+        std::none_of(g.cloth.regions.begin(), g.cloth.regions.end(),
+                     [](const Region& region) { return region.material && resists_shear(*region.material); }))
+        return;
     const double diagonal = std::hypot(g.a, g.b), shape = diagonal * diagonal / (g.a * g.b);
     const std::array<int, 2> cells{g.patch.cells_u(), g.patch.cells_v()};
     const auto across = [&](int i, int j, std::uint32_t p, std::uint32_t q) {
         const Material& m = material_at(g.cloth, g.uv(i + 0.5, j + 0.5));
-        springs.add(p, q, diagonal, m.shear * shape, m.shear_damping * shape);
+        const double share = shear_share(g, i, j) * shape;
+        springs.add(p, q, diagonal, m.shear * share, m.shear_damping * share);
     };
     grid.diagonal = add_rows(g, springs.size(), cells, {0, 0}, {1, 1}, across);
     grid.anti = add_rows(g, springs.size(), cells, {1, 0}, {0, 1}, across);
 }
 
-void add_bends(const Grid& g, BendSprings& bends, GridSprings& grid) {
+// Tells of a cloth whose diagonals have less than its shear modulus.
+void note_shear(const Grid& g, std::vector<std::string>& notes) {
+    double least = 1;
+    for (int j = 0; j < g.patch.cells_v(); ++j) {
+        for (int i = 0; i < g.patch.cells_u(); ++i) least = std::min(least, shear_share(g, i, j));
+    }
+    if (least < 1)
+        notes.push_back(weak_shear_note(g.cloth, least, fmt::format("{:.3g} x {:.3g} m", g.a, g.b)));
+}
+
+// Curvature along both directions of threads and the twist of cells, and arcs between neighbours.
+void add_curvature(const Grid& g, CurvatureStencils& stencils, BendSprings& bends, GridSprings& grid) {
+    const auto bend_at = [&](double i, double j) { return material_at(g.cloth, g.uv(i, j)).bend; };
+    const int last_u = g.patch.tube ? (g.nu() > 2 ? g.nu() : 0) : g.nu() - 2, last_v = g.nv() - 2;
+    const std::array<int, 2> cells{g.patch.cells_u(), g.patch.cells_v()};
+    const auto cube = [](double y) { return y * y * y; };
+    const auto along = [&](int axis) {
+        return [&, axis](int i, int j, std::uint32_t p, std::uint32_t q) {
+            const int u = axis == 0 ? i + 1 : i, v = axis == 0 ? j : j + 1;
+            const double c = axis == 0 ? g.width_v(v) / cube(g.a) : g.width_u(u) / cube(g.b);
+            stencils.add(std::array{p, g.patch.at(u, v), q}, line_weights, bend_at(u, v) * c);
+        };
+    };
+    const auto twist = [&](int i, int j, std::uint32_t p, std::uint32_t q) {
+        stencils.add(std::array{p, g.patch.at(i + 1, j), q, g.patch.at(i, j + 1)}, twist_weights,
+                     2.0 * bend_at(i + 0.5, j + 0.5) / (g.a * g.b));
+    };
+    const auto arc = [&](int axis) {
+        return [&, axis](int i, int j, std::uint32_t p, std::uint32_t q) {
+            const Vec2 middle = axis == 0 ? g.uv(i + 0.5, j) : g.uv(i, j + 0.5);
+            const Material& m = material_at(g.cloth, middle);
+            bends.add(p, q, axis == 0 ? g.a : g.b, m.bend * (axis == 0 ? g.width_v(j) : g.width_u(i)),
+                      m.buckling_strain);
+        };
+    };
+    grid.curve_u = add_rows(g, stencils.size(), {last_u, g.nv()}, {0, 0}, {2, 0}, along(0));
+    grid.curve_v = add_rows(g, stencils.size(), {g.nu(), last_v}, {0, 0}, {0, 2}, along(1));
+    grid.twist = add_rows(g, stencils.size(), cells, {0, 0}, {1, 1}, twist);
+    grid.bend_u = add_rows(g, bends.size(), {cells[0], g.nv()}, {0, 0}, {1, 0}, arc(0));
+    grid.bend_v = add_rows(g, bends.size(), {g.nu(), cells[1]}, {0, 0}, {0, 1}, arc(1));
+}
+
+void add_bends(const Grid& g, ClothModel& model, GridSprings& grid) {
+    BendSprings& bends = model.bends;
     const auto bends_at_all = [](const Region& region) {
         return region.material && region.material->bend > 0;
     };
     if (g.cloth.material.bend <= 0 &&
         std::none_of(g.cloth.regions.begin(), g.cloth.regions.end(), bends_at_all))
         return;
+    if (g.cloth.bend_model == BendModel::curvature) return add_curvature(g, model.curvature, bends, grid);
     const double diagonal = std::hypot(g.a, g.b), across = g.a * g.b / diagonal;
     // A tube of three or four columns has its next-nearest neighbours already among its nearest.
     const int last_u = g.patch.tube ? (g.nu() > 4 ? g.nu() : 0) : g.nu() - 2, last_v = g.nv() - 2;
@@ -133,17 +210,63 @@ void add_bends(const Grid& g, BendSprings& bends, GridSprings& grid) {
     grid.bend_anti = add_rows(g, bends.size(), {last_u, last_v}, {2, 0}, {0, 2}, of(2 * diagonal, wide));
 }
 
+// A cell that a pin holds at both ends for good is rigid: of the cloth that a line of three stands for, half
+// a cell on either side of its middle, only the other half bends.
+void stiffen_clamped(ClothModel& model) {
+    std::vector<std::uint32_t> holder(model.size(), 0);  // 1 + the pin's number, 0: free
+    for (std::uint32_t g = 0; g < model.pins.size(); ++g) {
+        if (std::isfinite(model.pins[g].release)) continue;
+        for (const std::uint32_t p : model.pins[g].particles) holder[p] = g + 1;
+    }
+    CurvatureStencils& stencils = model.curvature;
+    std::vector<double> stiffness(stencils.size());
+    for (std::size_t s = 0; s < stencils.size(); ++s) {
+        const auto& p = stencils.p[s];
+        const std::uint32_t by = holder[p[1]];
+        const bool line = stencils.w[1][s] == line_weights[1], before = holder[p[0]] == by;
+        const bool behind = holder[p[2]] == by && (stencils.count(s) == 3 || holder[p[3]] == by);
+        stiffness[s] = (line && by > 0 && before != behind ? 2.0 : 1.0) * stencils.stiffness[s];
+    }
+    stencils.stiffness.own() = std::move(stiffness);
+    stencils.stiffness.code();
+}
+
 void place(const Grid& g, Placement& placement) {
     const Cloth& cloth = g.cloth;
+    const StartPlaces places(cloth);
     for (int j = 0; j < g.nv(); ++j) {
         for (int i = 0; i < g.nu(); ++i) {
-            placement.x.push_back(started_particle(cloth, i, j));
+            placement.x.push_back(places.started(i, j));
             placement.v.push_back(cloth.velocity);
         }
     }
 }
 
-void add_pins(const Grid& g, const Placement& placement, std::vector<PinnedGroup>& groups) {
+// How much nearer to their middle the particles come whose row is drawn together to `width`.
+double gathered_share(const PinnedGroup& group, bool ring, double width) {
+    double length = 0;
+    for (std::size_t k = ring ? 0 : 1; k < group.start.size(); ++k)
+        length += (group.start[k] - group.start[k > 0 ? k - 1 : group.start.size() - 1]).norm();
+    return length > 0 ? width / length : 1;
+}
+
+// What the pin rides and slides on.
+void attach(const Pin& pin, PinnedGroup& group) {
+    group.carried = pin.carried;
+    if (!pin.slide.isZero(0)) group.slide = pin.slide.normalized();
+    if (!pin.carried.by) return;
+    const Solid& body = *pin.carried.by;
+    if (!pin.rod.empty()) {
+        const Pose rod = solid_pose(body, 0);
+        group.slide = rod.linear().col(1);
+        group.rod = rod.translation();
+        group.reach = 0.5 * body.height;
+    }
+    if (carrying_triangle(body, group.centre) < 0) return;
+    for (const Vec3& x : group.start) group.triangles.push_back(carrying_triangle(body, x));
+}
+
+void add_pins(const Grid& g, double begin, const Placement& placement, std::vector<PinnedGroup>& groups) {
     for (const Pin& pin : g.cloth.pins) {
         PinnedGroup group;
         for (const std::size_t index : pinned_particles(g.cloth, pin)) {
@@ -155,6 +278,12 @@ void add_pins(const Grid& g, const Placement& placement, std::vector<PinnedGroup
         group.centre /= static_cast<double>(group.particles.size());
         group.motion = pin.motion;
         group.release = pin.release.value_or(infinity);
+        if (pin.gather) {
+            group.gather = gathered_share(group, g.patch.tube, *pin.gather);
+            group.gather_begin = begin;
+            group.gather_time = pin.gather_time;
+        }
+        attach(pin, group);
         groups.push_back(std::move(group));
     }
 }
@@ -181,6 +310,13 @@ SelfCollision fitting(SelfCollision settings, std::span<const Grid> grids, const
 
 }  // namespace
 
+bool ClothModel::solids_by_surfaces() const {
+    // No edge cuts a plane whose ends are both outside: a plane needs no more than particles.
+    return std::ranges::any_of(solids, [](const Solid& solid) {
+        return solid.contact == ContactMethod::surface && solid.shape != Shape::plane;
+    });
+}
+
 AirCells air_cells(const ClothModel& model) {
     AirCells air;
     for (const ClothPatch& patch : model.cloths) {
@@ -197,6 +333,7 @@ AirCells air_cells(const ClothModel& model) {
 
 ClothModel build_model(const Scene& scene, Placement& placement) {
     ClothModel model;
+    model.begin = -scene.clip.settle;
     model.gravity = scene.gravity;
     model.solids = scene.solids;
     placement = {};
@@ -226,6 +363,13 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
         springs.tube = g.patch.tube;
         add_stretch(g, model.springs, springs);
     }
+    for (const Grid& g : grids) {
+        if (g.patch.grid()) {
+            note_shear(g, model.notes);
+        } else {
+            note_mesh_shear(g.cloth, model.notes);
+        }
+    }
     model.springs.stretch_count = model.springs.size();
     // A cloth that is a grid also keeps its springs by direction; `model.grids` has one entry for each of
     // those.
@@ -236,11 +380,18 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
     }
     for (std::size_t c = 0, grid = 0; c < grids.size(); ++c) {
         const Grid& g = grids[c];
-        g.patch.grid() ? add_bends(g, model.bends, model.grids[grid++])
-                       : add_mesh_bends(g.cloth, g.patch.first, model.bends);
+        if (g.patch.grid()) {
+            add_bends(g, model, model.grids[grid++]);
+        } else if (g.cloth.bend_model == BendModel::curvature) {
+            add_mesh_curvature(g.cloth, g.patch.first, model.curvature);
+            add_mesh_arcs(g.cloth, g.patch.first, model.bends);
+        } else {
+            add_mesh_bends(g.cloth, g.patch.first, model.bends);
+        }
     }
     for (const Grid& g : grids) place(g, placement);
-    for (const Grid& g : grids) add_pins(g, placement, model.pins);
+    for (const Grid& g : grids) add_pins(g, model.begin, placement, model.pins);
+    if (!model.pins.empty() && model.curvature.size() > 0) stiffen_clamped(model);
     for (const Grid& g : grids) {
         if (!g.patch.grid()) add_stitches(g.cloth, g.patch, placement, model);
     }
@@ -249,6 +400,7 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
         model.self_collision = fitting(*scene.self_collision, grids, model);
         find_mesh_neighbours(model);
     }
+    model.contact = make_contact_model(scene, model, placement);
     model.spring_adjacency = !model.grids.empty() && model.grids.size() == model.cloths.size()
                                  ? adjacency_of(model.grids)
                                  : adjacency_of(model.size(), model.springs.i, model.springs.j);

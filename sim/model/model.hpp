@@ -9,6 +9,7 @@
 
 #include "sim/forces/air.hpp"
 #include "sim/forces/bend.hpp"
+#include "sim/forces/curvature.hpp"
 #include "sim/forces/extension.hpp"
 #include "sim/forces/grid_springs.hpp"
 #include "sim/scene/math.hpp"
@@ -46,6 +47,19 @@ struct PinnedGroup {
     Vec3 centre{0, 0, 0};                  ///< m, what the motion turns about
     Motion motion;
     double release = 0;  ///< s; +∞: never
+    Carried carried;     ///< the body that takes it along, after its own motion
+    /// Drawn together: at `gather_begin` [s] its particles are where they start, `gather_time` [s] later at
+    /// this share of their distance from the centre, and stay there. 1: they are not.
+    double gather = 1, gather_begin = 0, gather_time = 1;
+    Vec3 slide{0, 0, 0};         ///< unit, at the start: the direction in which they are free; zero: in none
+    Vec3 rod{0, 0, 0};           ///< m, at the start: the middle of what they slide on
+    double reach = 0;            ///< m along it from there, beyond which they don't slide; 0: it has no ends
+    std::vector<int> triangles;  ///< (particles) of a body that deforms: what each rides on; empty: of none
+    bool slides() const { return !slide.isZero(0); }
+    /// Whether it takes its particles elsewhere while it holds them.
+    bool moves() const {
+        return !motion.empty() || gather != 1 || !triangles.empty() || (carried.by && carried.by->moves());
+    }
 };
 
 /// Particles near each other along a mesh, which never collide: those of p are sorted in
@@ -65,7 +79,8 @@ struct Stitches {
     std::size_t size() const { return i.size(); }
 };
 
-struct ForceTerm;  // sim/terms/term.hpp
+struct ContactModel;  // sim/model/contact_model.hpp
+struct ForceTerm;     // sim/terms/term.hpp
 
 /// Everything that does not change while the cloth moves: topology, rest shape, masses, springs, pins, and
 /// the effects that the scene calls for. Const once built.
@@ -74,17 +89,27 @@ struct ClothModel {
     std::vector<double> mass;  ///< (particles) kg: density times the area that is nearer to it than to others
     ExtensionSprings springs;  ///< stretch and shear
     Adjacency spring_adjacency;
-    BendSprings bends;
+    BendSprings bends;  ///< arcs: of bending by buckling alone over two cells, else between neighbours
+    CurvatureStencils curvature;     ///< bending that is linear in curvature; empty: none
     std::vector<GridSprings> grids;  ///< one per cloth that is a grid: its springs by direction
     Stitches stitches;               ///< empty where no mesh has seams
     std::vector<PinnedGroup> pins;
-    Vec3 gravity{0, 0, 0};                        ///< m/s²
-    std::vector<Solid> solids;                    ///< what the cloth meets; empty: no contact at all
-    std::optional<Wind> wind;                     ///< absent: no air at all
+    double begin = 0;           ///< s, when the simulation begins; below 0: it settles first
+    Vec3 gravity{0, 0, 0};      ///< m/s²
+    std::vector<Solid> solids;  ///< what the cloth meets; empty: no contact at all
+    std::optional<Wind> wind;   ///< absent: no air at all
     std::optional<SelfCollision> self_collision;  ///< absent: none; what the scene leaves open is filled in
+    std::shared_ptr<const ContactModel> contact;  ///< null where no surfaces meet (make_contact_model())
     Neighbours neighbours;                        ///< of particles of meshes; empty without self-collision
+    std::vector<std::string> notes;               ///< where springs can't do what the scene says
     std::vector<const ForceTerm*> further_terms;  ///< forces besides those of scenes; not owned
     std::size_t size() const { return mass.size(); }
+    /// Whether cloth meets cloth, or a solid, between surfaces.
+    bool cloth_by_surfaces() const {
+        return self_collision && self_collision->method == ContactMethod::surface;
+    }
+    bool solids_by_surfaces() const;
+    bool by_surfaces() const { return cloth_by_surfaces() || solids_by_surfaces(); }
 };
 
 /// The cells of all cloths, for the air.
@@ -97,11 +122,13 @@ struct Placement {
 
 /// Builds the model of a checked scene, and where its particles start. Spring constants follow from the
 /// material so that refining a grid refines the same cloth: with cells of a × b metres,
-///   stretch along u: k_s = E_u · (width of the strip it stands for)/a, half a strip along an edge;
+///   stretch along u: k_s = E_u · (width of the strip it stands for)/a, half a strip along an edge, less what
+///   the diagonals of the cells beside it resist (sim/model/moduli.hpp);
 ///   shear: k_s = G (a² + b²)/(a b): a cell in shear has one diagonal in extension, and that one alone gives
-///   G; bend: k_b = B·(width of the strip)/3 along rows, columns and diagonals: on square cells isotropic,
-///   and of bending energy ½ B κ² per area for a cylinder of any direction; c_b so that the push has reached
-///   the arc's own at the material's buckling strain.
+///   G; bend: c = B·(width of the strip)/a³ of particles in a line, 2 B/(a b) of a cell's twist, of energy
+///   ½ B κ² per area for a cylinder of any direction (sim/forces/curvature.hpp); k_b = B·(width of the strip)
+///   of arcs, c_b so that the push has reached the arc's own at the material's buckling strain. By buckling
+///   alone k_b = B·(width)/3 along rows, columns and diagonals over two cells, likewise on square cells.
 /// Damping scales as the stiffness it goes with.
 ClothModel build_model(const Scene& scene, Placement& placement);
 

@@ -45,7 +45,13 @@ struct StepReport {
     /// Temporary springs of self-collision; they count as implicit or explicit too.
     std::uint32_t self_contacts = 0;
     double self_distance = 0;  ///< m, least between particles that may collide, at most the thickness
+    /// At the end of a frame's last step (sim/run/passages.hpp): edges of cloth through faces of cloth, edges
+    /// through solids, and how deep cloth is in a solid [m]. Absent elsewhere, and where nothing can meet.
+    std::optional<std::uint64_t> crossings, in_solids;
+    double deepest = 0;
     double max_strain = 0, p99_strain = 0;  ///< of stretch springs, (l − L)/L
+    std::uint32_t strained = 0;             ///< the stretch spring of largest strain
+    std::uint32_t pulling = 0;              ///< contacts with solids that stay though they pull
     double lowest = 0;                      ///< m, lowest particle's y
     double kinetic = 0, potential = 0;      ///< J; gravity's zero is at y = 0
     StageTimes times;

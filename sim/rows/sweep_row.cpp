@@ -135,6 +135,27 @@ UNRAVEL_VERSIONS void bend_row(const RowState& a, const RowState& b, double rest
     }
 }
 
+UNRAVEL_VERSIONS void curvature_row(std::span<const RowPart> parts, const double* stiffness,
+                                    std::size_t count) {
+    double pull[strip];
+    const bool four = parts.size() == 4;
+    for (std::size_t first = 0; first < count; first += strip) {
+        const std::size_t n = std::min(strip, count - first);
+        const double* const c = stiffness + first;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto at = [&](std::size_t k) { return parts[k].x[axis] + first; };
+            const double *const a = at(0), *const b = at(1), *const d = at(2), *const e = at(four ? 3 : 0);
+            const double wa = parts[0].w, wb = parts[1].w, wd = parts[2].w, we = four ? parts[3].w : 0.0;
+            for (std::size_t k = 0; k < n; ++k)
+                pull[k] = c[k] * ((wa * a[k] + wd * d[k]) + (wb * b[k] + we * e[k]));
+            for (const RowPart& part : parts) {
+                double* const f = part.f[axis] + first;
+                for (std::size_t k = 0; k < n; ++k) f[k] -= part.w * pull[k];
+            }
+        }
+    }
+}
+
 UNRAVEL_VERSIONS void air_row(const RowState& a, const RowState& b, const double* mass_a,
                               const double* mass_b, const RowWind& wind, std::size_t count, const Row& fa,
                               const Row& fb) {

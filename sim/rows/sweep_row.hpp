@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 
 #include "sim/forces/extension.hpp"
 #include "sim/scene/math.hpp"
@@ -49,6 +50,18 @@ void mark_row(const ConstRow& a, const ConstRow& b, double rest, std::size_t cou
 /// `crossing` the length below which the arc's push is the weaker [m].
 void bend_row(const RowState& a, const RowState& b, double rest, const double* arc, const double* slope,
               const double* crossing, std::size_t count, const Row& fa, const Row& fb);
+
+/// One particle of each of a row of curvature stencils: where it is, what it gets, and its weight.
+struct RowPart {
+    ConstRow x;  ///< m
+    Row f;       ///< N
+    double w;
+};
+
+/// Adds the forces −c w_k Σ w x of `count` curvature stencils (sim/forces/curvature.hpp) of three or four
+/// particles to each part's.
+///   stiffness  (stencils) c [N/m]
+void curvature_row(std::span<const RowPart> parts, const double* stiffness, std::size_t count);
 
 /// What the air needs to know (sim/forces/air.hpp).
 struct RowWind {

@@ -29,7 +29,7 @@ double excess(const AdaptiveStep& settings, const StepReport& report, const Clot
 
 }  // namespace
 
-StepReport adaptive_step(Simulation& simulation, const AdaptiveStep& settings, int rate) {
+StepReport adaptive_step(Simulation& simulation, const AdaptiveStep& settings, double rate) {
     ClothState& state = simulation.state;
     const int deepest = std::clamp(
         static_cast<int>(std::floor(std::log2(1.0 / (rate * settings.smallest)) + 1e-9)), 0, most_halvings);
@@ -66,7 +66,9 @@ StepReport adaptive_step(Simulation& simulation, const AdaptiveStep& settings, i
             state.part = 0;
         }
         if (over < calm_share && state.halvings > 0 && state.part % (2 * length) == 0) --state.halvings;
-        state.t = (static_cast<double>(state.whole_steps) + static_cast<double>(state.part) / parts) / rate;
+        state.t = (static_cast<double>(state.whole_steps) + static_cast<double>(state.part) / parts -
+                   static_cast<double>(simulation.settling)) /
+                  rate;
         report.t = state.t;
         return report;
     }

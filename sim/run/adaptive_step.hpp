@@ -11,6 +11,6 @@ namespace unravel::sim {
 /// grid of halvings: frames are always hit. Throws SimulationError where a step of the smallest size would
 /// have to be rejected.
 ///   rate  1/s, of the scene's own steps
-StepReport adaptive_step(Simulation& simulation, const AdaptiveStep& settings, int rate);
+StepReport adaptive_step(Simulation& simulation, const AdaptiveStep& settings, double rate);
 
 }  // namespace unravel::sim

@@ -75,6 +75,11 @@ void members(Archive& archive, Record& r) {
         archive(s.contacts);
         archive(s.self_contacts);
         archive(s.self_distance);
+        archive(s.crossings);
+        archive(s.in_solids);
+        archive(s.deepest);
+        archive(s.strained);
+        archive(s.pulling);
         archive(s.max_strain);
         archive(s.p99_strain);
         archive(s.lowest);

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/forces/extension_law.hpp"
+#include "sim/mesh/mesh_solid.hpp"
+#include "sim/model/particle_name.hpp"
 #include "sim/step/energy_input.hpp"
 #include "sim/step/trace.hpp"
 
@@ -31,6 +34,8 @@ std::string advice_for(Criterion criterion, const StepOptions& options, double h
             return fmt::format(
                 "raise solver.max_iterations (now {}), take a smaller step, or soften what is stiffest",
                 options.solve.max_iterations);
+        case Criterion::pinched:
+            break;  // says it itself
     }
     return "";
 }
@@ -57,17 +62,21 @@ double strain_of(const ClothModel& model, const std::vector<Vec3>& x, std::uint3
     return spring_strain((x[model.springs.j[s]] - x[model.springs.i[s]]).norm(), model.springs.rest[s]);
 }
 
-std::string particle_name(const ClothModel& model, std::uint32_t p) {
-    std::size_t c = 0;
-    while (p >= model.cloths[c].first + model.cloths[c].count()) ++c;
-    const ClothPatch& patch = model.cloths[c];
-    if (!patch.grid())
-        return fmt::format("particle {} (vertex {}{})", p, p - patch.first + 1,
-                           model.cloths.size() > 1 ? " of cloth " + std::to_string(c) : std::string());
-    const auto nu = static_cast<std::uint32_t>(patch.particles[0]);
-    const std::string where =
-        fmt::format("particle {} (u {}, v {}", p, (p - patch.first) % nu, (p - patch.first) / nu);
-    return where + (model.cloths.size() > 1 ? fmt::format(" of cloth {})", c) : std::string(")"));
+// A solve ends at a share of what all springs pull together. Where some pull so much harder than a particle's
+// own inertia, κ of Eq. (7), that share moves the others about; hard damping is seen to do so from here on.
+constexpr double tolerable_kappa = 1e3;
+
+// The tolerance that the hardest springs ask for, in words, where the scene's is looser; else empty.
+std::string finer_solves(const ClothModel& model, const StepOptions& options, double h) {
+    const ExtensionSprings& springs = model.springs;
+    double hardest = 0;
+    for (std::uint32_t s = 0; s < springs.size(); ++s)
+        hardest = std::max(hardest, kappa_between(h, model.mass[springs.i[s]], model.mass[springs.j[s]],
+                                                  springs.stiffness[s], springs.damping[s]));
+    const double wanted = tolerable_kappa / hardest;
+    if (options.integrator == Integrator::explicit_ || options.solve.tolerance <= wanted) return "";
+    return fmt::format("lower solver.tolerance to {:.0e} (now {}), or soften what is stiffest or damped most",
+                       0.01 * wanted, options.solve.tolerance);
 }
 
 struct Judgement {
@@ -79,7 +88,9 @@ struct Judgement {
 
     [[noreturn]] void stop(Criterion criterion, const std::string& what) {
         failure.criterion = criterion;
-        failure.advice = advice_for(criterion, options, h);
+        const std::string finer =
+            criterion == Criterion::unsolved ? std::string() : finer_solves(model, options, h);
+        failure.advice = finer.empty() ? advice_for(criterion, options, h) : finer;
         throw SimulationError(fmt::format("step {} (from {:.6g} s, {:.6g} s long): {}; {}", failure.step,
                                           failure.t, h, what, failure.advice),
                               failure);
@@ -158,7 +169,7 @@ struct Judgement {
 }  // namespace
 
 const char* criterion_name(Criterion criterion) {
-    constexpr const char* names[] = {"not_finite", "strain", "energy", "unsolved"};
+    constexpr const char* names[] = {"not_finite", "strain", "energy", "unsolved", "pinched"};
     return names[static_cast<int>(criterion)];
 }
 
@@ -191,7 +202,8 @@ Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
     const double of_rounding = energy_of_rounding(model, start, h);
     guard.energy = height + 2.0 * (spent + of_rounding);
     guard.total = report.kinetic + report.potential;
-    guard.rounding = rounding_share * spent + of_rounding;
+    // What springs between surfaces hold is counted by nobody yet.
+    if (!model.by_surfaces()) guard.rounding = rounding_share * spent + of_rounding;
     return guard;
 }
 

@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include "sim/run/adaptive_step.hpp"
+#include "sim/run/passages.hpp"
 #include "sim/step/trace.hpp"
 
 namespace unravel::sim {
 
 int steps_per_frame(const Scene& scene) {
-    return static_cast<int>(std::lround(1.0 / (scene.clip.fps * scene.solver.step)));
+    return static_cast<int>(std::lround(1.0 / (scene.clip.fps.per_second() * scene.solver.step)));
 }
 
 Simulation start_simulation(const Scene& scene) {
@@ -21,17 +22,35 @@ Simulation start_simulation(const Scene& scene) {
     simulation.steps_per_frame = steps_per_frame(scene);
     simulation.state = initial_state(placement);
     simulation.adaptive = scene.solver.adaptive;
+    simulation.settling = static_cast<std::uint64_t>(
+        std::lround(scene.clip.settle * simulation.fps.per_second() * simulation.steps_per_frame));
+    if (simulation.settling > 0)
+        simulation.state.t = -static_cast<double>(simulation.settling) /
+                             (simulation.fps.per_second() * simulation.steps_per_frame);
     plan_step(simulation.model, simulation.options, scene.solver.step, simulation.ws);
     simulation.guard = make_guard(simulation.model, simulation.state, scene.solver.step);
     return simulation;
 }
 
+bool settle(Simulation& simulation, const std::function<bool()>& keep_on) {
+    if (simulation.settling == 0) return true;
+    while (simulation.state.whole_steps < simulation.settling) {
+        if (!keep_on()) return false;
+        next_step(simulation);
+    }
+    simulation.settling = 0;
+    simulation.state.whole_steps = 0;
+    simulation.state.t = 0;
+    return true;
+}
+
 void restore(Simulation& simulation, const FrameRecord& record) {
+    simulation.settling = 0;
     simulation.state = record.state;
     simulation.frame = record.frame;
     if (record.reports.empty()) return;
     // What has been put in so far is in the state.
-    const double h = 1.0 / (simulation.fps * simulation.steps_per_frame);
+    const double h = 1.0 / (simulation.fps.per_second() * simulation.steps_per_frame);
     simulation.guard.energy = make_guard(simulation.model, simulation.state, h).energy;
     simulation.guard.total = record.reports.back().kinetic + record.reports.back().potential;
 }
@@ -54,21 +73,29 @@ FrameRecord present_record(const Simulation& simulation) {
 }
 
 StepReport next_step(Simulation& simulation) {
-    const int rate = simulation.fps * simulation.steps_per_frame;
+    const double rate = simulation.fps.per_second() * simulation.steps_per_frame;
     ClothState& state = simulation.state;
     if (simulation.adaptive) return adaptive_step(simulation, *simulation.adaptive, rate);
     StepReport report = guarded_step(simulation.model, simulation.options, 1.0 / rate, state, simulation.ws,
                                      simulation.guard);
     ++state.whole_steps;
-    report.t = state.t = static_cast<double>(state.whole_steps) / rate;
+    report.t = state.t =
+        (static_cast<double>(state.whole_steps) - static_cast<double>(simulation.settling)) / rate;
     return report;
 }
 
 FrameRecord next_record(Simulation& simulation) {
+    settle(simulation);
     std::vector<StepReport> reports;
     const auto due = static_cast<std::uint64_t>(simulation.frame + 1) * simulation.steps_per_frame;
     while (simulation.state.whole_steps < due) reports.push_back(next_step(simulation));
     ++simulation.frame;
+    if (simulation.model.contact && !reports.empty()) {
+        const Passages passages = find_passages(simulation.model, simulation.state.t, simulation.state.x);
+        reports.back().crossings = passages.cloth_count();
+        reports.back().in_solids = passages.solids;
+        reports.back().deepest = passages.deepest;
+    }
     FrameRecord record = present_record(simulation);
     record.reports = std::move(reports);
     return record;

@@ -70,6 +70,18 @@ constexpr StatsColumn columns[] = {
     {"self_distance",
      "least distance of particles that may collide, at most the thickness [m]; 0 without self-collision",
      [](R r) { return fmt::format("{}", r.self_distance); }},
+    {"pulling", "contacts with solids that stay though they pull",
+     [](R r) { return fmt::format("{}", r.pulling); }},
+    {"crossings",
+     "edges of cloth through faces of cloth, counted at frames; empty elsewhere, and with a single cloth "
+     "without self-collision",
+     [](R r) { return r.crossings ? fmt::format("{}", *r.crossings) : std::string(); }},
+    {"in_solids",
+     "edges of cloth that pass through solids, counted at frames; empty elsewhere, and without solids of a "
+     "closed form",
+     [](R r) { return r.in_solids ? fmt::format("{}", *r.in_solids) : std::string(); }},
+    {"deepest", "how far cloth is inside a solid, at frames [m]; empty as `in_solids`",
+     [](R r) { return r.in_solids ? fmt::format("{}", r.deepest) : std::string(); }},
     {"max_strain", "largest (l - L)/L of the stretch springs",
      [](R r) { return fmt::format("{}", r.max_strain); }},
     {"p99_strain", "its 99th percentile", [](R r) { return fmt::format("{}", r.p99_strain); }},

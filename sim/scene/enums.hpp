@@ -24,6 +24,44 @@ constexpr Words words_of(Wrap) {
     return wrap_words;
 }
 
+/// How cloth resists bending: linearly in its curvature, and as arcs where it buckles between particles; or
+/// by the arcs of Choi & Ko 2002 over two cells alone, as the paper has it.
+enum class BendModel { curvature, buckling };
+inline constexpr std::string_view bend_model_words[] = {"curvature", "buckling"};
+constexpr Words words_of(BendModel) {
+    return bend_model_words;
+}
+
+/// How a path goes from one keyframe to the next: a monotone cubic that is smooth where such follow each
+/// other (smooth), at even speed (linear), not at all until the next is due (hold), or from rest to rest
+/// (ease).
+enum class Interpolation { smooth, linear, hold, ease };
+inline constexpr std::string_view interpolation_words[] = {"smooth", "linear", "hold", "ease"};
+constexpr Words words_of(Interpolation) {
+    return interpolation_words;
+}
+
+/// Across which axis a mirror stands, at the world's origin.
+enum class Mirror { none, x, y, z };
+inline constexpr std::string_view mirror_words[] = {"none", "x", "y", "z"};
+constexpr Words words_of(Mirror) {
+    return mirror_words;
+}
+
+/// Where a sheet's front looks at the start.
+enum class Facing { up, down, front, back, left, right };
+inline constexpr std::string_view facing_words[] = {"up", "down", "front", "back", "left", "right"};
+constexpr Words words_of(Facing) {
+    return facing_words;
+}
+
+/// Which line a sheet follows at the start.
+enum class StartShape { pleated, folded, rolled, over_bar };
+inline constexpr std::string_view start_shape_words[] = {"pleated", "folded", "rolled", "over-bar"};
+constexpr Words words_of(StartShape) {
+    return start_shape_words;
+}
+
 /// Which way is up in a mesh's file.
 enum class UpAxis { y, z };
 inline constexpr std::string_view up_axis_words[] = {"y", "z"};
@@ -75,8 +113,8 @@ constexpr Words words_of(Preconditioner) {
     return preconditioner_words;
 }
 
-/// How bend springs are treated: as the integrator has it (implicitly by implicit and newton), or explicitly
-/// by all.
+/// How bending is treated: as the integrator has it (implicitly by implicit and newton, by its own κ by the
+/// others), or explicitly by all.
 enum class BendTreatment { scheme, explicit_ };
 inline constexpr std::string_view bend_treatment_words[] = {"scheme", "explicit"};
 constexpr Words words_of(BendTreatment) {
@@ -84,20 +122,41 @@ constexpr Words words_of(BendTreatment) {
 }
 
 /// When a spring that is slack at the start of a step begins to act within it: not before the next step
-/// (start); where the last step's motion carried on would make it taut (predicted); where the solution does,
-/// in a second solve (resolve); or where it is taut at x + h v, at which implicit springs are then linearised
-/// (ahead): the first iteration of Newton's method for backward Euler, begun where the step would end without
-/// forces.
+/// (start); where the last step's motion carried on would make it taut, and, solved again, where the solution
+/// stretches one beyond what may be missed (predicted); wherever the solution makes it taut, in a second
+/// solve (resolve); or where it is taut at x + h v, at which implicit springs are then linearised (ahead):
+/// the first iteration of Newton's method for backward Euler, begun where the step would end without forces.
 enum class Activation { start, predicted, resolve, ahead };
 inline constexpr std::string_view activation_words[] = {"start", "predicted", "resolve", "ahead"};
 constexpr Words words_of(Activation) {
     return activation_words;
 }
 
+/// What meets what: particles alone; or vertices, edges and faces of the cloth.
+enum class ContactMethod { particles, surface };
+inline constexpr std::string_view contact_method_words[] = {"particles", "surface"};
+constexpr Words words_of(ContactMethod) {
+    return contact_method_words;
+}
+
 enum class Weave { plain, twill, checks, stripes, solid };
 inline constexpr std::string_view weave_words[] = {"plain", "twill", "checks", "stripes", "solid"};
 constexpr Words words_of(Weave) {
     return weave_words;
+}
+
+/// How a solid's surface takes the light.
+enum class Finish { satin, matt, gloss, metal };
+inline constexpr std::string_view finish_words[] = {"satin", "matt", "gloss", "metal"};
+constexpr Words words_of(Finish) {
+    return finish_words;
+}
+
+/// What the component view is drawn on: a screen, or a page.
+enum class Theme { dark, paper };
+inline constexpr std::string_view theme_words[] = {"dark", "paper"};
+constexpr Words words_of(Theme) {
+    return theme_words;
 }
 
 /// What the colours of the component view tell.

@@ -16,6 +16,7 @@ inline constexpr int max_frames = 100'000;
 inline constexpr double max_steps = 1e8;
 inline constexpr double step_slack = 1e-6;         // relative, of a step that divides the frame
 inline constexpr std::size_t max_list = 4096;      // cloths, solids, pins, keyframes: tables in one list
+inline constexpr std::size_t max_includes = 16;    // files that a scene takes over, those of others included
 inline constexpr std::size_t max_problems = 1000;  // kept; a file that is no scene has no end of them
 inline constexpr std::size_t max_key_parts = 16;   // of a dotted key
 

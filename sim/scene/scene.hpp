@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -16,6 +17,9 @@
 #include <vector>
 
 #include "sim/scene/enums.hpp"
+#include "sim/scene/path.hpp"
+#include "sim/scene/rate.hpp"
+#include "sim/scene/start_shape.hpp"
 
 namespace unravel::sim {
 
@@ -25,18 +29,21 @@ using Vec2 = Eigen::Vector2d;
 struct MeshCloth;  // sim/mesh/mesh_cloth.hpp
 struct MeshSolid;  // sim/mesh/mesh_solid.hpp
 
-/// A place in the scene file (1-based), or in the n-th --set option when `option` is positive.
+/// A place in the scene file (1-based), in the n-th file that it includes when `file` is positive, or in the
+/// n-th --set option when `option` is.
 struct SourcePlace {
     int line = 0;
     int column = 0;
     int option = 0;
+    int file = 0;
 };
 
 struct Clip {
     double duration = 3.0;  ///< s; frames 0 … round(duration·fps), frame k due at exactly k/fps
-    int fps = 30;           ///< frames per second
-    std::array<int, 2> size{1280, 720};  ///< pixels, both even (4:2:0 video)
-    int frames() const { return static_cast<int>(duration * fps + 0.5) + 1; }
+    Rate fps;
+    std::array<int, 2> size{1280, 720};  ///< pixels; both even where an mp4 is made
+    double settle = 0;  ///< s simulated before frame 0 and not shown; what moves stands as at 0 meanwhile
+    int frames() const { return static_cast<int>(std::lround(duration * fps.per_second())) + 1; }
 };
 
 /// Elastic constants of a cloth as a continuum, so that refining the grid refines the same cloth.
@@ -70,31 +77,36 @@ struct Region {
     SourcePlace place;
 };
 
-struct Keyframe {
-    double time = 0;         ///< s
-    Vec3 position{0, 0, 0};  ///< m
-    Vec3 rotation{0, 0, 0};  ///< degrees about x, then y, then z (world axes)
-};
-
-/// Keyframed rigid motion, interpolated with continuous velocity (Hermite; at rest before the first and after
-/// the last keyframe). Empty: does not move.
-using Motion = std::vector<Keyframe>;
-
 /// A box in the world, at the start.
 struct WorldBox {
     Vec3 low{0, 0, 0}, high{0, 0, 0};  ///< m
+};
+
+struct Solid;
+
+/// What is carried by a body: where that goes, it goes. Set by the loader from the body's name.
+struct Carried {
+    std::shared_ptr<const Solid> by;  ///< null: by nothing
+    int triangle = -1;                ///< of a mesh that deforms: the one that it rides on
 };
 
 /// Particles whose motion is prescribed: fully constrained from the start until `release`.
 struct Pin {
     PinTarget target = PinTarget::corner;
     std::string name;  ///< corner: "u0v0", "u1v0", "u0v1", "u1v1"; edge: "u0", "u1", "v0", "v1"
+    int count = 0;     ///< edge: of the particles along it so many, evenly spaced; 0: all
     std::array<int, 4> range{0, 0, 0, 0};  ///< particles: first and last grid index along u, then along v
     UvBox box;
     UvDisc disc;
     std::string group;  ///< of a mesh's vertices
     WorldBox within;    ///< a mesh's vertices in it
     Motion motion;      ///< displacement from, and rotation about the centre of, the pinned particles
+    std::string to;     ///< name of the solid that it rides on; empty: the world
+    Carried carried;    ///< by that solid
+    std::optional<double> gather;   ///< edge: m, to which the row of its particles is drawn together
+    double gather_time = 1;         ///< s that this takes, from the start of the simulation
+    Vec3 slide{0, 0, 0};            ///< direction in which its particles are free; zero: in none
+    std::string rod;                ///< name of the cylinder or capsule that they slide on; empty: none
     std::optional<double> release;  ///< s; absent: never
     SourcePlace place;
 };
@@ -134,11 +146,16 @@ struct Cloth {
     Vec3 rotation{0, 0, 0};                    ///< degrees about x, then y, then z
     Vec3 velocity{0, 0, 0};                    ///< m/s at the start
     std::array<double, 2> placed_scale{1, 1};  ///< size as placed over size at rest (1.08: 8% pre-stretched)
+    Facing facing = Facing::up;                ///< before it is rotated
+    std::optional<Start> start;                ///< absent: flat, or the tube that it is
+    std::optional<Wrinkles> wrinkles;
     double jitter = 0;       ///< m, seeded random displacement along the normal at the start
     std::uint32_t seed = 1;  ///< of the jitter
     Material material;
+    BendModel bend_model = BendModel::buckling;
     std::vector<Region> regions;
     std::vector<Pin> pins;
+    Repeat repeat;  ///< as read; the loader has replaced it by cloths of their own
     SourcePlace place;
 };
 
@@ -170,13 +187,23 @@ struct Solid {
     Vec3 size{1, 1, 1};   ///< box: full edge lengths [m]
     double round = 0.0;   ///< box, cylinder: radius of the rounded edges [m]
     Vec3 center{0, 0, 0};
-    Vec3 rotation{0, 0, 0};  ///< degrees
-    Motion motion;           ///< displaces and turns it (about `pivot`) from where it stands
-    Vec3 pivot{0, 0, 0};     ///< m, in the world at the start; default: its centre
+    Vec3 rotation{0, 0, 0};    ///< degrees
+    Motion motion;             ///< displaces and turns it (about `pivot`) from where it stands
+    Vec3 pivot{0, 0, 0};       ///< m, in the world at the start; default: its centre
+    std::optional<Fall> fall;  ///< after its motion
+    std::string parent;        ///< name of the solid that it rides on; empty: the world
+    Carried carried;           ///< by that solid
+    Repeat repeat;             ///< as read; the loader has replaced it by solids of their own
     Friction friction;
     double offset = 0.004;  ///< m, distance at which cloth is held off the surface (its skin)
-    std::string color;      ///< "#rrggbb"; empty: the look's default
+    ContactMethod contact = ContactMethod::particles;  ///< what of the cloth it holds off
+    std::string color;                                 ///< "#rrggbb"; empty: the look's default
     SourcePlace place;
+
+    /// Whether its place or its rotation changes.
+    bool moves() const {
+        return !motion.empty() || fall || (carried.by && (carried.triangle >= 0 || carried.by->moves()));
+    }
 };
 
 /// Step size chosen while running; a rejected step is undone exactly.
@@ -226,9 +253,11 @@ struct Wind {
 };
 
 struct SelfCollision {
-    double thickness = 0;  ///< m; 0: from the particle spacing
-    double stiffness = 0;  ///< N/m of a temporary spring; 0: from the material
-    double damping = 0;    ///< N·s/m
+    ContactMethod method = ContactMethod::particles;  ///< `particles`: as in the paper, Sec. 2.2
+    double thickness = 0;  ///< m; 0: from the particles' spacing; of surfaces from each cloth's density
+    double stiffness = 0;  ///< N/m of a contact; 0: from the material
+    double damping = 0;    ///< N·s/m; of surfaces 0 is a fifth of critical
+    Friction friction;     ///< between layers; between surfaces only
     SourcePlace place;
 };
 
@@ -243,6 +272,11 @@ struct Camera {
         Vec3 position{0, 0, 0}, target{0, 0, 0};
     };
     std::vector<Key> keyframes;
+    Interpolation interpolation = Interpolation::smooth;  ///< of the keyframes
+    std::string follow;   ///< name of a solid or cloth that position and target go along with; empty: none
+    bool fit = false;     ///< goes back or forth along its line of sight until the scene fills the picture
+    double aperture = 0;  ///< m, across the lens; 0: all is sharp. Drawn at final quality only
+    std::optional<double> focus;  ///< m, distance of what is sharp; absent: the target's
 };
 
 struct ClothLook {
@@ -253,15 +287,47 @@ struct ClothLook {
     std::string texture;  ///< PNG file beside the scene; empty: the weave
 };
 
+struct BodyLook {
+    Finish finish = Finish::satin;
+    std::string texture;  ///< PNG file beside the scene, laid on from three sides; empty: none
+    double scale = 0.5;   ///< m of the surface that the picture spans
+};
+
+/// The lamp that casts shadows with edges.
+struct Sun {
+    Vec3 direction{-0.35, 0.8, 0.5};  ///< towards it; need not be unit
+    std::string color;                ///< empty: a warm white
+    double strength = 1;              ///< of the usual
+    std::optional<double> softness;   ///< degrees that it is across; absent: 5.7
+};
+
+/// Light from all around.
+struct Sky {
+    std::string color;    ///< empty: a cool white with a share of the background
+    double strength = 1;  ///< of the usual
+    std::string image;    ///< PNG file beside the scene, all directions on twice as wide as high; empty: none
+    bool show = false;    ///< the image is also the background
+};
+
 struct Look {
     std::vector<ClothLook> cloth;  ///< one per cloth; the last serves the rest
+    std::vector<BodyLook> body;    ///< one per solid; the last serves the rest
+    Sun sun;
+    Sky sky;
+    double exposure = 0;  ///< stops: each doubles all light
     std::string background = "#d8dee6";
+    std::string background_top;    ///< of a gradient from `background` at the bottom; empty: one colour
+    std::string background_image;  ///< PNG file beside the scene that fills the picture; empty: none
     std::string ground = "#8d9096";
+    std::string ground_texture;  ///< PNG file beside the scene, repeated; empty: one colour
+    double ground_scale = 1;     ///< m of the ground that the picture spans
+    bool horizon = false;        ///< the ground goes on to the horizon, not only to a little beyond the scene
     std::string solid = "#c9b79c";
     bool show_ground = true;
     std::optional<double> ground_height;  ///< m; absent: under the lowest plane or a little under everything
     Show show = Show::components;
-    double show_max = 0;       ///< where the scale of strain (1) or velocity [m/s] ends; 0: 0.05, 3
+    double show_max = 0;  ///< where the scale of strain (1) or velocity [m/s] ends; 0: by the clip
+    Theme theme = Theme::dark;
     bool legend = false;       ///< tell in the picture what its colours mean
     bool transparent = false;  ///< no ground, no background: frames with an alpha channel
     int subdivide = -1;  ///< times that each cell is drawn as four smooth ones; −1: as a coarse grid needs it
@@ -271,11 +337,12 @@ struct Look {
 
 /// The whole scene. Gravity is present unless the scene says `gravity = [0, 0, 0]`.
 struct Scene {
-    std::string name;                ///< file name without its ending
-    std::string text;                ///< the file as read
-    std::string root;                ///< folder of the files that it names, from its own; empty: its own
-    std::filesystem::path home;      ///< that folder as the loader found it
-    std::vector<std::string> notes;  ///< what the loader passed over, mended or asks about
+    std::string name;                  ///< file name without its ending
+    std::string text;                  ///< the file as read
+    std::string root;                  ///< folder of the files that it names, from its own; empty: its own
+    std::vector<std::string> include;  ///< scene files whose tables it takes over
+    std::filesystem::path home;        ///< that folder as the loader found it
+    std::vector<std::string> notes;    ///< what the loader passed over, mended or asks about
     Clip clip;
     Vec3 gravity{0, -9.81, 0};  ///< m/s²
     std::vector<Cloth> cloths;

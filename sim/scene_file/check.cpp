@@ -2,9 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/scene/limits.hpp"
+#include "sim/scene_file/look_pictures.hpp"
 #include "sim/solids/shape.hpp"
 
 namespace unravel::sim {
@@ -28,18 +30,18 @@ void check_names(const Checking& check, const std::vector<T>& things, std::strin
 /// The frame is the whole number of steps nearest to what the scene says.
 void check_step(const Checking& check) {
     const Scene& scene = check.scene;
-    const double steps = 1 / (scene.clip.fps * scene.solver.step);
+    const double steps = 1 / (scene.clip.fps.per_second() * scene.solver.step);
     const double whole = std::max(1.0, std::round(steps));
     if (std::abs(steps - whole) > step_slack * whole) {
         check.report("solver.step",
-                     fmt::format("the step of {} s does not divide a frame of 1/{} s", scene.solver.step,
-                                 scene.clip.fps),
-                     fmt::format("the nearest that does is \"1/{:.0f}\"", scene.clip.fps * whole));
-    } else if (steps * scene.clip.frames() > max_steps) {
-        check.report(
-            "solver.step",
-            fmt::format("{:.3g} steps in {} frames", steps * scene.clip.frames(), scene.clip.frames()),
-            fmt::format("at most {:.0e} are run", max_steps));
+                     fmt::format("the step of {} s does not divide a frame of {} s", scene.solver.step,
+                                 step_text(scene.clip.fps, 1)),
+                     fmt::format("the nearest that does is \"{}\"",
+                                 step_text(scene.clip.fps, static_cast<long long>(whole))));
+    } else if (const double frames = scene.clip.frames() + scene.clip.settle * scene.clip.fps.per_second();
+               steps * frames > max_steps) {
+        check.report("solver.step", fmt::format("{:.3g} steps in {:.0f} frames", steps * frames, frames),
+                     fmt::format("at most {:.0e} are run", max_steps));
     }
     if (scene.solver.adaptive && check.places.sound("solver.adaptive") &&
         scene.solver.adaptive->smallest > scene.solver.step)
@@ -54,14 +56,15 @@ void check_step(const Checking& check) {
 void check_clip(const Checking& check) {
     const Clip& clip = check.scene.clip;
     if (!check.places.sound("clip.duration") || !check.places.sound("clip.fps")) return;
-    if (clip.duration * clip.fps < 0.5) {
-        check.report(
-            "clip.duration", fmt::format("a clip of {} s is shorter than a frame", clip.duration),
-            fmt::format("at {} frames per second it takes {:.4g} s or more", clip.fps, 1.0 / clip.fps));
+    const double frames = clip.duration * clip.fps.per_second();
+    if (frames < 0.5) {
+        check.report("clip.duration", fmt::format("a clip of {} s is shorter than a frame", clip.duration),
+                     fmt::format("at {} frames per second it takes {:.4g} s or more", rate_text(clip.fps),
+                                 clip.fps.time_of(1)));
         return;
     }
-    if (clip.duration * clip.fps > max_frames) {
-        check.report("clip.duration", fmt::format("a clip of {:.0f} frames", clip.duration * clip.fps),
+    if (frames > max_frames) {
+        check.report("clip.duration", fmt::format("a clip of {:.0f} frames", frames),
                      fmt::format("at most {} are made", max_frames));
         return;
     }
@@ -152,6 +155,49 @@ ContainedFile contained_file(const std::filesystem::path& folder, const std::str
     return {std::move(file), {}, {}};
 }
 
+namespace {
+
+void check_follow(const Checking& check, std::size_t camera) {
+    const Scene& scene = check.scene;
+    const std::string& followed = scene.cameras[camera].follow;
+    if (followed.empty()) return;
+    if (scene.cameras[camera].fit)
+        check.report(fmt::format("camera[{}].fit", camera),
+                     "a camera that is fitted to the scene follows nothing", "leave out fit or follow");
+    std::string there;
+    const auto add = [&](const auto& things) {
+        for (const auto& thing : things)
+            if (!thing.name.empty()) there += fmt::format("{}\"{}\"", there.empty() ? "" : ", ", thing.name);
+    };
+    add(scene.solids);
+    add(scene.cloths);
+    const auto names = [&](const auto& thing) { return thing.name == followed; };
+    if (std::ranges::any_of(scene.solids, names) || std::ranges::any_of(scene.cloths, names)) return;
+    check.report(fmt::format("camera[{}].follow", camera),
+                 fmt::format("there is no solid or cloth named \"{}\"", followed),
+                 there.empty() ? "give one of them a name" : "there is " + there);
+}
+
+void check_light(const Checking& check) {
+    const Look& look = check.scene.look;
+    if (check.places.sound("look.sun.direction") && look.sun.direction.norm() < 1e-9)
+        check.report("look.sun.direction", "a sun that stands nowhere",
+                     "write the direction towards it, such as [-0.35, 0.8, 0.5]");
+    if (look.sky.show && look.sky.image.empty())
+        check.report("look.sky.show", "a sky without an image is not to be shown",
+                     "name one by image = \"sky.png\"");
+}
+
+// Every picture that the scene names is to lie in its folder.
+void check_pictures(const Checking& check) {
+    for (const auto& [key, file] : look_pictures(check.scene.look)) {
+        const ContainedFile found = contained_file(check.scene.home, file, "texture");
+        if (!found.what.empty()) check.report(key, found.what, found.hint);
+    }
+}
+
+}  // namespace
+
 void check_looks(const Checking& check) {
     for (std::size_t i = 0; i < check.scene.cameras.size(); ++i) {
         const Camera& camera = check.scene.cameras[i];
@@ -166,14 +212,9 @@ void check_looks(const Checking& check) {
                       camera.keyframes[k].target);
     }
     check_names(check, check.scene.cameras, "camera");
-
-    for (std::size_t i = 0; i < check.scene.look.cloth.size(); ++i) {
-        const std::string& texture = check.scene.look.cloth[i].texture;
-        if (texture.empty()) continue;
-        const std::string path = fmt::format("look.cloth[{}].texture", i);
-        const ContainedFile found = contained_file(check.scene.home, texture, "texture");
-        if (!found.what.empty()) check.report(path, found.what, found.hint);
-    }
+    for (std::size_t i = 0; i < check.scene.cameras.size(); ++i) check_follow(check, i);
+    check_light(check);
+    check_pictures(check);
 }
 
 }  // namespace unravel::sim

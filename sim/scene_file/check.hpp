@@ -38,6 +38,12 @@ struct ContainedFile {
 ContainedFile contained_file(const std::filesystem::path& folder, const std::string& name,
                              std::string_view kind);
 
+/// Replaces what the scene says to repeat by cloths and solids of their own, behind those that are written.
+void repeat_things(Scene&, Places&);
+
+/// Finds the bodies that pins and solids ride on by their names, and what falls from where. After the meshes.
+void attach_things(Scene&, const Places&, std::vector<SceneProblem>&);
+
 /// Reads the meshes that the scene names into its cloths and solids, and reports what is wrong with them and
 /// with what refers to them (pins, regions). Before the checks above.
 void load_meshes(Scene&, const Places&, std::vector<SceneProblem>&);

@@ -27,7 +27,7 @@ struct Held {
 class HeldSearch {
 public:
     HeldSearch(const Cloth& cloth, const Solid& solid)
-        : cloth_(cloth), solid_(solid), to_solid_(start_pose(solid).inverse()) {}
+        : cloth_(cloth), solid_(solid), places_(cloth), to_solid_(start_pose(solid).inverse()) {}
 
     std::optional<Held> find() const {
         return cloth_.geometry ? find_vertex() : find(0, cloth_.particles[0], 0, cloth_.particles[1]);
@@ -36,7 +36,7 @@ public:
 private:
     std::optional<Held> find_vertex() const {
         for (int v = 0; v < cloth_.particles[0]; ++v) {
-            const double distance = signed_distance(solid_, to_solid_ * started_particle(cloth_, v, 0));
+            const double distance = signed_distance(solid_, to_solid_ * places_.started(v, 0));
             if (distance < -solid_.offset) return Held{v, 0, -distance};
         }
         return {};
@@ -44,13 +44,14 @@ private:
 
     std::optional<Held> find(int i0, int i1, int j0, int j1) const {
         const int i = (i0 + i1) / 2, j = (j0 + j1) / 2;
-        const double distance = signed_distance(solid_, to_solid_ * started_particle(cloth_, i, j));
+        const double distance = signed_distance(solid_, to_solid_ * places_.started(i, j));
         if (distance < -solid_.offset) return Held{i, j, -distance};
-        // On a tube the way through the air is shorter than along the cloth, so the bound holds there too.
+        // On a tube or a start shape the way through the air is shorter than along the cloth: the bound holds
+        // there too.
         const double reach_u = spacing(0) * std::max(i - i0, i1 - 1 - i);
         const double reach_v = spacing(1) * std::max(j - j0, j1 - 1 - j);
         const bool single = i1 - i0 == 1 && j1 - j0 == 1;
-        const double reach = std::hypot(reach_u, reach_v) + 2 * cloth_.jitter;
+        const double reach = std::hypot(reach_u, reach_v) + 2 * places_.most_displaced();
         if (single || distance + solid_.offset > reach * (1 + 1e-9)) return {};
         for (const auto& [a0, a1] : {std::array{i0, i}, std::array{i, i1}}) {
             for (const auto& [b0, b1] : {std::array{j0, j}, std::array{j, j1}}) {
@@ -69,6 +70,7 @@ private:
 
     const Cloth& cloth_;
     const Solid& solid_;
+    StartPlaces places_;
     Eigen::Isometry3d to_solid_;
 };
 
@@ -95,6 +97,7 @@ std::array<int, 2> nearest_particle(const Cloth& cloth, const Vec2& uv) {
 
 // Whether two pins have any particle at the same place all the time.
 bool moves_alike(const Pin& a, const Pin& b) {
+    if (a.to != b.to || a.rod != b.rod || a.gather != b.gather || a.slide != b.slide) return false;
     const auto still = [](const Pin& pin) {
         return std::all_of(pin.motion.begin(), pin.motion.end(), [](const Keyframe& key) {
             return key.position.isZero(0) && key.rotation.isZero(0);
@@ -104,7 +107,8 @@ bool moves_alike(const Pin& a, const Pin& b) {
     return std::equal(a.motion.begin(), a.motion.end(), b.motion.begin(), b.motion.end(),
                       [](const Keyframe& one, const Keyframe& other) {
                           return one.time == other.time && one.position == other.position &&
-                                 one.rotation.isZero(0) && other.rotation.isZero(0);
+                                 one.interpolation == other.interpolation && one.rotation.isZero(0) &&
+                                 other.rotation.isZero(0);
                       });
 }
 
@@ -175,11 +179,26 @@ void check_start(const Checking& check) {
     }
 }
 
+namespace {
+
+void check_count(Fields& fields, const Cloth& cloth, const Pin& pin, const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+        const int there = name.starts_with("u") ? cloth.particles[1] : cloth.particles[0];
+        if (name.empty() || pin.count <= there) continue;
+        fields.problem("count", fmt::format("{} of the {} particles along {}", pin.count, there, name),
+                       "make it less, or the grid finer");
+        return;
+    }
+}
+
+}  // namespace
+
 void check_pin(const Fields& cloth_fields, Fields& pin_fields, const Cloth& cloth, const Pin& pin,
                const std::vector<std::string>& names) {
     if (!cloth_fields.sound("particles") || !cloth_fields.sound("size") || !cloth_fields.sound("wrap"))
         return;
     const auto [nu, nv] = cloth.particles;
+    if (pin.count > 0 && pin_fields.sound("count")) check_count(pin_fields, cloth, pin, names);
     const auto nothing = [&](std::string_view key, std::string hint) {
         if (pin_fields.says(key) && pin_fields.sound(key))
             pin_fields.problem(key, "the pin catches no particle", std::move(hint));

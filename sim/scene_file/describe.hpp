@@ -16,10 +16,19 @@ void describe(Fields&, Region&, const Cloth&);
 /// `names`: where a pin names several corners or edges, all of them; it is read as one pin for each.
 void describe(Fields&, Pin&, std::vector<std::string>& names);
 void describe(Fields&, Keyframe&);
+/// Keyframes under the key `motion`, and how they are interpolated where they don't say it themselves.
+void describe_path(Fields&, const Key& motion, Motion&);
+void describe(Fields&, Start&);
+void describe(Fields&, Wrinkles&);
+void describe(Fields&, Fall&);
+/// Of cloths and solids. The loader replaces them by things of their own, so that it is never written.
+void describe(Fields&, Repeat&);
 /// A mesh's file under the key `file`, and what else is said of it; of a `body` or of cloth.
 void describe(Fields&, MeshFile&, const Key& file, bool body);
 void describe(Fields&, MeshFrames&, bool applies);
 void describe(Fields&, Solid&);
+/// A key that is a number, or a table of static and kinetic.
+void describe_friction(Fields&, const Key&, Friction&);
 void describe(Fields&, Wind&);
 void describe(Fields&, WindKey&);
 void describe(Fields&, SelfCollision&);
@@ -27,6 +36,9 @@ void describe(Fields&, Camera&);
 void describe(Fields&, Camera::Key&);
 void describe(Fields&, Look&);
 void describe(Fields&, ClothLook&);
+void describe(Fields&, BodyLook&);
+void describe(Fields&, Sun&);
+void describe(Fields&, Sky&);
 
 /// Describes keyframes one after the other and reports one that is not later than the one before.
 template <class Key>

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include "sim/mesh/start_line.hpp"
 #include "sim/scene/limits.hpp"
 #include "sim/scene_file/check.hpp"
 #include "sim/scene_file/describe.hpp"
@@ -20,6 +21,19 @@ void describe_box(Fields& f, const Key& key, UvBox& box) {
     box.high = {values[2], values[3]};
     if (f.reading() && (values[0] > values[2] || values[1] > values[3]))
         f.problem(key.name, "'box' runs backwards", "write the lower corner first: [u0, v0, u1, v1]");
+}
+
+// What only the whole cloth shows to be wrong with its start shape.
+void check_start_shape(Fields& f, const Cloth& cloth) {
+    if (!f.reading() || !cloth.start || !f.sound("start") || !f.sound("size") || !f.sound("placed_scale"))
+        return;
+    if (cloth.wrap == Wrap::tube) {
+        f.problem("start", "a tube has a start shape of its own", "say start of a sheet only");
+        return;
+    }
+    const std::size_t axis = cloth.start->from.starts_with('u') ? 0 : 1;
+    const UnfitStart unfit = unfit_start(*cloth.start, cloth.size[axis] * cloth.placed_scale[axis]);
+    if (!unfit.what.empty()) f.problem("start", unfit.what, unfit.hint);
 }
 
 }  // namespace
@@ -78,6 +92,11 @@ void describe(Fields& f, Cloth& cloth) {
             [&](Fields& g) { describe(g, cloth.material); });
     if (const MaterialPreset* preset = f.reading() ? find_preset(cloth.material.preset) : nullptr)
         cloth.density = preset->density;
+    f.choice(
+        {"bend_model",
+         "\"curvature\": linear in it, and arcs where cloth buckles between particles; \"buckling\": the "
+         "arcs of Choi & Ko 2002 alone, as in the paper"},
+        cloth.bend_model);
     f.number({"density", "kg/m²; default: the material preset's, else 0.2"}, cloth.density, density_bounds);
     f.choice({"wrap", "\"tube\": closed along u, for sleeves; of grids only", false, grid}, cloth.wrap);
     if (f.sound("particles") && f.sound("wrap") && cloth.wrap == Wrap::tube && cloth.particles[0] < 3)
@@ -85,13 +104,25 @@ void describe(Fields& f, Cloth& cloth) {
     f.vector({"center", "m"}, cloth.center, position_bounds);
     f.vector({"rotation", "degrees about x, then y, then z; unrotated it lies flat"}, cloth.rotation,
              rotation_bounds);
+    f.choice({"facing", "where its front looks before it is rotated; upright, v = 0 is above", false,
+              !f.writing() || cloth.facing != Facing::up},
+             cloth.facing);
     f.vector({"velocity", "m/s at the start"}, cloth.velocity, speed_bounds);
     f.numbers({"placed_scale", "size as placed over size at rest, along u and along v; 1.08: pre-stretched",
                false, grid},
               cloth.placed_scale, {0, 10});
+    f.optional_table({"start", "how it lies at the start; absent: flat. Of sheets only", false, grid},
+                     cloth.start, Start{}, [](Fields& g, Start& start) { describe(g, start); });
+    check_start_shape(f, cloth);
+    f.optional_table({"wrinkles", "smooth random displacement along the normal at the start"}, cloth.wrinkles,
+                     Wrinkles{}, [](Fields& g, Wrinkles& wrinkles) { describe(g, wrinkles); });
     f.number({"jitter", "m, random displacement along the normal at the start"}, cloth.jitter,
              {0, 1, false, "m"});
     f.seed({"seed", "of the jitter"}, cloth.seed);
+    describe(f, cloth.repeat);
+    if (f.says("mirror") && cloth.repeat.mirror != Mirror::none && mesh)
+        f.problem("mirror", "a mesh has no mirror image here", "mirror its file");
+    const bool mirrored_tube = cloth.repeat.mirror != Mirror::none && cloth.wrap == Wrap::tube;
     f.list({"region", "parts made of something else; a later one covers an earlier one"}, cloth.regions,
            ListForm::tables, [&](Fields& g, Region& region) { describe(g, region, cloth); });
 
@@ -105,6 +136,8 @@ void describe(Fields& f, Cloth& cloth) {
                 g.problem(word_of(pin.target),
                           fmt::format("a pin by '{}' of a {}", word_of(pin.target), mesh ? "mesh" : "grid"),
                           mesh ? "say group or within" : "say corner, edge, particles, box or disc");
+            if (g.reading() && mirrored_tube && pin.target == PinTarget::particles)
+                g.problem("particles", "indices around a tube that has a mirror image", "say box or disc");
             for (const std::string& name : names) {
                 pins.push_back(pin);
                 pins.back().name = name;
@@ -121,11 +154,15 @@ void describe(Fields& f, Material& material) {
     if (f.reading() && f.says("preset")) {
         if (const MaterialPreset* preset = find_preset(material.preset)) material = preset->material;
     }
-    f.number_or_pair({"stretch", "N/m, force per width and strain; a number, or [along u, along v]"},
-                     material.stretch, {0, 1e9, false, "N/m"});
+    f.number_or_pair(
+        {"stretch", "N/m, force per width and strain, held in its width; a number, or [along u, along v]"},
+        material.stretch, {0, 1e9, false, "N/m"});
     f.number_or_pair({"stretch_damping", "N·s/m; a number, or [along u, along v]"}, material.stretch_damping,
                      {0, 1e6, false, "N·s/m"});
-    f.number({"shear", "N/m, shear modulus times thickness"}, material.shear, {0, 1e9, false, "N/m"});
+    f.number({"shear", "N/m, shear modulus times thickness; 0: no shear springs at all"}, material.shear,
+             {0, 1e9, false, "N/m"});
+    // What has no stiffness is not damped by default either.
+    if (f.reading() && f.says("shear") && material.shear == 0) material.shear_damping = 0;
     f.number({"shear_damping", "N·s/m"}, material.shear_damping, {0, 1e6, false, "N·s/m"});
     f.number({"bend", "N·m, bending stiffness per width"}, material.bend, {0, 100, false, "N·m"});
     f.number({"buckling_strain", "compression from which a strip pushes as a buckled arc"},
@@ -190,8 +227,33 @@ void describe(Fields& f, Pin& pin, std::vector<std::string>& names) {
         if (f.says("disc")) pin.target = PinTarget::disc;
     }
     f.place(pin.place, word_of(pin.target));
-    f.list({"motion", "keyframes: displacement from, and rotation about the centre of, the pinned particles"},
-           pin.motion, ListForm::inline_tables, in_order<Keyframe>());
+    const bool edge = !f.reading() || pin.target == PinTarget::edge;
+    f.integer({"count", "of the particles along an edge so many, evenly spaced, such as hooks; 0: all", false,
+               edge && (!f.writing() || pin.count > 0)},
+              pin.count, 0, max_particles);
+    f.optional_number(
+        {"gather", "m, to which the row of its particles is drawn together; of an edge", false, edge},
+        pin.gather, {1e-3, 1000, false, "m"});
+    f.number({"gather_time", "s that this takes, from the start: of the settling where the clip has one",
+              false, f.reading() ? f.says("gather") : !f.writing() || pin.gather},
+             pin.gather_time, {1e-3, max_time, false, "s"});
+    f.text({"to", "name of the solid that it rides on, also of one that deforms; default: the world"}, pin.to,
+           TextKind::name);
+    f.vector({"slide", "direction in which its particles are free to move; default: they are held", false,
+              !f.writing() || !pin.slide.isZero(0)},
+             pin.slide, {-1000, 1000});
+    f.text({"rod", "name of a cylinder or capsule along which its particles slide, as far as its ends"},
+           pin.rod, TextKind::name);
+    describe_path(
+        f, {"motion", "keyframes: displacement from, and rotation about the centre of, the pinned particles"},
+        pin.motion);
+    for (const char* other : {"to", "slide"}) {
+        if (f.says("rod") && f.says(other))
+            f.problem(other, fmt::format("'{}' beside 'rod'", other),
+                      "what slides on a rod rides on it, too");
+    }
+    if (f.says("rod") && f.says("motion"))
+        f.problem("motion", "'motion' beside 'rod'", "what slides on a rod goes where the rod goes");
     const auto displaced = [](const Keyframe& key) {
         return !key.position.isZero(0) || !key.rotation.isZero(0);
     };
@@ -206,6 +268,24 @@ void describe(Fields& f, Keyframe& key) {
     f.number({"time", "s", true}, key.time, time_bounds);
     f.vector({"position", "m"}, key.position, position_bounds);
     f.vector({"rotation", "degrees about x, then y, then z"}, key.rotation, rotation_bounds);
+    f.choice({"interpolation", "on the way to the next keyframe; default: the path's", false,
+              !f.writing() || key.interpolation != Interpolation::smooth},
+             key.interpolation);
+}
+
+void describe_path(Fields& f, const Key& motion, Motion& keys) {
+    Interpolation all = Interpolation::smooth;
+    f.choice(
+        {"interpolation",
+         "between keyframes: smooth (speed is continuous, at rest in the first and the last), linear, hold "
+         "(jumps), or ease (from rest to rest)",
+         false, !f.writing()},
+        all);
+    f.list(motion, keys, ListForm::inline_tables,
+           [all, next = in_order<Keyframe>()](Fields& g, Keyframe& key) mutable {
+               if (g.reading()) key.interpolation = all;
+               next(g, key);
+           });
 }
 
 }  // namespace unravel::sim

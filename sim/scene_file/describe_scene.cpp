@@ -6,6 +6,12 @@ void describe(Fields& f, Scene& scene) {
     f.text({"root", "folder of the files that the scene names, from its own; default: its own", false,
             !f.writing()},
            scene.root, TextKind::path);
+    f.texts(
+        {"include",
+         "scene files whose tables this one takes over: its own keys replace theirs, and lists of cloths, "
+         "solids and cameras are joined, theirs first",
+         false, !f.writing()},
+        scene.include, TextKind::path);
     f.table({"clip", "what is recorded"}, [&](Fields& g) { describe(g, scene.clip); });
     f.vector({"gravity", "m/s², acceleration of free fall; [0, 0, 0] switches it off"}, scene.gravity,
              {-1000, 1000, false, "m/s²"});
@@ -26,7 +32,11 @@ void describe(Fields& f, Scene& scene) {
 
 void describe(Fields& f, Clip& clip) {
     f.number({"duration", "s"}, clip.duration, {0, max_time, true, "s"});
-    f.integer({"fps", "frames per second"}, clip.fps, 1, 1000);
+    f.rate({"fps", "frames per second; a whole number or a fraction such as \"30000/1001\""}, clip.fps, 1,
+           1000);
+    f.number({"settle", "s simulated before frame 0 and not shown; what moves stands still meanwhile", false,
+              !f.writing() || clip.settle > 0},
+             clip.settle, time_bounds);
     f.integers({"size", "pixels, width and height; both even where an mp4 is made"}, clip.size, 16, 8192);
 }
 
@@ -46,7 +56,9 @@ void describe(Fields& f, Solver& solver) {
     f.integer({"max_iterations", "of the conjugate gradients, per component"}, solver.max_iterations, 1,
               10'000'000);
     f.flag({"decompose", "solve each component of implicitly coupled particles by itself"}, solver.decompose);
-    f.choice({"bend", "bend springs as the integrator has them (implicit, newton: implicitly), or explicit"},
+    f.choice({"bend",
+              "bending as the integrator has it (implicit, newton: implicitly; others: by its own kappa), or "
+              "explicit"},
              solver.bend);
     f.choice({"activation",
               "when a slack spring acts: next step, where predicted taut, in a second solve, or as "

@@ -1,5 +1,9 @@
+#include <fmt/core.h>
+
+#include <cmath>
 #include <string>
 
+#include "sim/scene/limits.hpp"
 #include "sim/scene_file/describe.hpp"
 #include "sim/solids/shape.hpp"
 
@@ -30,6 +34,35 @@ std::string of_shapes(bool ShapeSizes::*size, std::string_view what) {
 }
 
 }  // namespace
+
+void describe_friction(Fields& f, const Key& key, Friction& friction) {
+    const bool plain = f.number_or_table(key, friction.static_, friction_bounds, [&](Fields& g) {
+        describe(g, friction);
+        if (g.reading() && !g.says("kinetic")) friction.kinetic = 0.8 * friction.static_;
+    });
+    if (plain) friction.kinetic = 0.8 * friction.static_;
+}
+
+void describe(Fields& f, Fall& fall) {
+    f.number({"time", "s, when it is let go; not before its motion has ended"}, fall.time, time_bounds);
+    f.vector({"velocity", "m/s at that time"}, fall.velocity, speed_bounds);
+    f.optional_number({"floor", "m, height at which its lowest point is stopped; default: nowhere"},
+                      fall.floor, position_bounds);
+    f.number({"bounce", "share of its speed that each bounce leaves"}, fall.bounce, {0, 0.99});
+    f.number({"give", "m by which the floor yields in the first bounce, and in others as they are softer"},
+             fall.give, {0, 10, false, "m"});
+}
+
+void describe(Fields& f, Repeat& repeat) {
+    const bool read = !f.writing();
+    f.integer({"count", "so many of them in a row", false, read}, repeat.count, 1,
+              static_cast<int>(max_list));
+    f.vector({"spacing", "m, from each to the next", false, read}, repeat.spacing, position_bounds);
+    f.choice({"mirror", "another beyond the plane x = 0, y = 0 or z = 0, with all that it has", false, read},
+             repeat.mirror);
+    if (f.reading() && repeat.count > 1 && repeat.spacing.isZero(0))
+        f.problem("count", fmt::format("{} of them in one place", repeat.count), "say spacing, too");
+}
 
 void describe(Fields& f, MeshFrames& frames, bool applies) {
     f.text({"mesh_frames", "how the mesh deforms: a PC2 file, or OBJ files numbered where the name has '#'",
@@ -76,19 +109,29 @@ void describe(Fields& f, Solid& solid) {
     f.number({"round", round, false, has.round}, solid.round, {0, 1000, false, "m"});
     f.vector({"center", "m"}, solid.center, position_bounds);
     f.vector({"rotation", "degrees about x, then y, then z"}, solid.rotation, rotation_bounds);
-    f.list({"motion", "keyframes: displacement from where it stands, and rotation about the pivot"},
-           solid.motion, ListForm::inline_tables, in_order<Keyframe>());
+    describe_path(f, {"motion", "keyframes: displacement from where it stands, and rotation about the pivot"},
+                  solid.motion);
     if (f.reading()) solid.pivot = solid.center;
     f.vector({"pivot", "m, in the world at the start; default: the center"}, solid.pivot, position_bounds);
-    const bool plain = f.number_or_table(
-        {"friction", "a number, or {static, kinetic}; a number mu stands for static mu, kinetic 0.8 mu"},
-        solid.friction.static_, friction_bounds, [&](Fields& g) {
-            describe(g, solid.friction);
-            if (g.reading() && !g.says("kinetic")) solid.friction.kinetic = 0.8 * solid.friction.static_;
-        });
-    if (plain) solid.friction.kinetic = 0.8 * solid.friction.static_;
+    f.optional_table({"fall", "it falls from where it stands, and bounces", false,
+                      !f.reading() || mesh || std::isfinite(law_of(shape).reach(solid))},
+                     solid.fall, Fall{}, [](Fields& g, Fall& fall) { describe(g, fall); });
+    f.text({"parent", "name of the solid that it rides on; default: the world"}, solid.parent,
+           TextKind::name);
+    describe(f, solid.repeat);
+    if (f.says("mirror") && solid.repeat.mirror != Mirror::none &&
+        (mesh || !std::isfinite(law_of(shape).reach(solid))))
+        f.problem("mirror", fmt::format("a {} has no mirror image here", word_of(shape)),
+                  "place the other one by itself");
+    describe_friction(
+        f, {"friction", "a number, or {static, kinetic}; a number mu stands for static mu, kinetic 0.8 mu"},
+        solid.friction);
     f.number({"offset", "m, distance at which cloth is held off the surface"}, solid.offset,
              {0, 1, false, "m"});
+    f.choice(
+        {"contact", "what of the cloth it holds off: particles alone, or edges and faces too; not of meshes",
+         false, !mesh || (!f.reading() && !f.writing())},
+        solid.contact);
     f.text({"color", "\"#rrggbb\"; default: the look's"}, solid.color, TextKind::color);
 }
 

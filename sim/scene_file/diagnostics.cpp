@@ -72,9 +72,12 @@ std::string format_one(const SceneProblem& problem, const Sources& sources) {
         return fmt::format("--set #{} ({}): error: {}\n{}", place.option, printable(option.substr(0, 60)),
                            message, excerpt(option, place.column, "     "));
     }
-    return fmt::format(
-        "{}:{}:{}: error: {}\n{}", sources.name, place.line, place.column, message,
-        excerpt(line_of(sources.text, place.line), place.column, fmt::format("{:>5}", place.line)));
+    const IncludedFile* included =
+        place.file > 0 ? &sources.included[static_cast<std::size_t>(place.file) - 1] : nullptr;
+    const std::string_view text = included ? std::string_view(included->text) : sources.text;
+    return fmt::format("{}:{}:{}: error: {}\n{}", included ? included->name : sources.name, place.line,
+                       place.column, message,
+                       excerpt(line_of(text, place.line), place.column, fmt::format("{:>5}", place.line)));
 }
 
 }  // namespace
@@ -87,7 +90,7 @@ std::string printable(std::string_view text) {
 
 std::string format_problems(std::vector<SceneProblem> problems, const Sources& sources) {
     const auto key = [](const SceneProblem& p) {
-        return std::tuple(p.place.option, p.place.line, p.place.column);
+        return std::tuple(p.place.option, p.place.file, p.place.line, p.place.column);
     };
     std::stable_sort(problems.begin(), problems.end(),
                      [&](const auto& a, const auto& b) { return key(a) < key(b); });
@@ -99,6 +102,21 @@ std::string format_problems(std::vector<SceneProblem> problems, const Sources& s
     out += problems.size() == 1 ? "1 problem in the scene"
                                 : fmt::format("{} problems in the scene", problems.size());
     return out;
+}
+
+void Places::repeat(const std::string& from, const std::string& to) {
+    const auto inside = [&](const std::string& path) {
+        return path.starts_with(from) &&
+               (path.size() == from.size() || path[from.size()] == '.' || path[from.size()] == '[');
+    };
+    std::vector<std::pair<std::string, SourcePlace>> places;
+    for (auto at = places_.lower_bound(from); at != places_.end() && at->first.starts_with(from); ++at)
+        if (inside(at->first)) places.emplace_back(to + at->first.substr(from.size()), at->second);
+    places_.insert(places.begin(), places.end());
+    std::vector<std::string> bad;
+    for (auto at = bad_.lower_bound(from); at != bad_.end() && at->starts_with(from); ++at)
+        if (inside(*at)) bad.push_back(to + at->substr(from.size()));
+    bad_.insert(bad.begin(), bad.end());
 }
 
 SourcePlace Places::at(std::string path) const {

@@ -13,11 +13,18 @@
 
 namespace unravel::sim {
 
+/// A file that a scene includes.
+struct IncludedFile {
+    std::string name;  ///< as shown
+    std::string text;
+};
+
 /// What the places of problems refer to.
 struct Sources {
     std::string name;                      ///< of the file, as shown
     std::string_view text;                 ///< of the file
     std::span<const std::string> options;  ///< --set, the first is option 1
+    std::vector<IncludedFile> included;    ///< the first is file 1
 };
 
 /// `file:line:column: error: what; hint`, the line and a caret, for each problem, options after the file.
@@ -30,6 +37,8 @@ std::string printable(std::string_view text);
 class Places {
 public:
     void add(const std::string& path, SourcePlace place) { places_[path] = place; }
+    /// Gives what stands under one path, "solid[0]", the same places under another.
+    void repeat(const std::string& from, const std::string& to);
     bool has(const std::string& path) const { return places_.contains(path); }
     void mark_bad(const std::string& path) { bad_.insert(path); }
     /// The value's place, or that of the nearest table around it that the file has.

@@ -61,6 +61,8 @@ public:
 
     virtual void flag(const Key&, bool&) = 0;
     virtual void integer(const Key&, int&, int low, int high) = 0;
+    /// A whole number, or a text "a/b" of two whole numbers; low and high bound the quotient.
+    virtual void rate(const Key&, Rate&, int low, int high) = 0;
     virtual void integers(const Key&, std::span<int>, int low, int high) = 0;
     virtual void seed(const Key&, std::uint32_t&) = 0;
     virtual void number(const Key&, double&, const Bounds&) = 0;
@@ -74,6 +76,8 @@ public:
     virtual bool number_or_table(const Key&, double&, const Bounds&,
                                  const std::function<void(Fields&)>& describe) = 0;
     virtual void text(const Key&, std::string&, TextKind) = 0;
+    /// A text or a list of them.
+    virtual void texts(const Key&, std::vector<std::string>&, TextKind) = 0;
     /// One of some words, kept as text; empty where absent.
     virtual void word(const Key&, std::string&, std::span<const std::string_view> words) = 0;
     /// One of some words or a list of them.

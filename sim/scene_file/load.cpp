@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cmath>
 #include <fstream>
+#include <iostream>
 #include <set>
 #include <system_error>
 
@@ -13,6 +14,7 @@
 #include "sim/scene/limits.hpp"
 #include "sim/scene_file/check.hpp"
 #include "sim/scene_file/describe.hpp"
+#include "sim/scene_file/include.hpp"
 #include "sim/scene_file/override.hpp"
 #include "sim/scene_file/reader.hpp"
 
@@ -36,6 +38,17 @@ std::string read_file(const std::filesystem::path& file) {
     return text;
 }
 
+/// What is written to the program, read once: a scene from there may be asked for again.
+const std::string& standard_input() {
+    static const std::string text = [] {
+        std::string read(max_scene_bytes + 1, '\0');
+        std::cin.read(read.data(), static_cast<std::streamsize>(read.size()));
+        read.resize(static_cast<std::size_t>(std::cin.gcount()));
+        return read;
+    }();
+    return text;
+}
+
 /// Names for what has none: its kind, with a number from the second on.
 template <class T, class Kind>
 void complete_names(std::vector<T>& things, Kind&& kind) {
@@ -56,16 +69,16 @@ void complete(Scene& scene, bool says_step) {
     complete_names(scene.cloths, [](const Cloth&) { return std::string_view("cloth"); });
     complete_names(scene.solids, [](const Solid& solid) { return word_of(solid.shape); });
     complete_names(scene.cameras, [](const Camera&) { return std::string_view("camera"); });
-    const double steps = 1 / (scene.clip.fps * scene.solver.step);
+    const double steps = 1 / (scene.clip.fps.per_second() * scene.solver.step);
     const double per_frame = says_step ? std::round(steps) : std::ceil(steps * (1 - step_slack));
-    scene.solver.step = 1 / (scene.clip.fps * per_frame);
+    scene.solver.step = 1 / (scene.clip.fps.per_second() * per_frame);
 }
 
 }  // namespace
 
 Scene parse_scene(const std::string& text, const std::string& name, const std::filesystem::path& folder,
                   const std::vector<std::string>& overrides) {
-    const Sources sources{name, text, overrides};
+    Sources sources{name, text, overrides, {}};
     std::vector<SceneProblem> problems;
     const auto stop_on_problems = [&] {
         if (!problems.empty()) throw SceneError(format_problems(problems, sources), problems);
@@ -78,6 +91,8 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
 
     Node root;
     if (!parse_document(text, root, problems)) stop_on_problems();
+    take_over_included(root, name, folder, sources.included, problems);
+    stop_on_problems();
     for (std::size_t i = 0; i < overrides.size(); ++i)
         apply_override(root, overrides[i], static_cast<int>(i) + 1, problems);
 
@@ -92,7 +107,9 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
     if (!scene.root.empty() && !std::filesystem::is_directory(scene.home))
         problems.push_back({places.at("root"), fmt::format("no folder \"{}\"", scene.root),
                             "it is looked for from the scene's own folder"});
+    repeat_things(scene, places);
     load_meshes(scene, places, problems);
+    attach_things(scene, places, problems);
     const Checking checking{scene, places, problems};
     check_clip(checking);
     check_cloths(checking);
@@ -109,6 +126,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
 }
 
 Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+    if (file == "-") return parse_scene(standard_input(), "stdin", ".", overrides);
     return parse_scene(read_file(file), file.string(), file.has_parent_path() ? file.parent_path() : ".",
                        overrides);
 }

@@ -28,9 +28,10 @@ private:
     std::vector<SceneProblem> problems_;
 };
 
-/// Reads and checks a scene file. Each override is "key=value" with the key a dotted path ("solver.step",
-/// "cloth.particles", "solid[1].radius") and the value TOML; it is checked like the file.
-/// Throws SceneError with every problem found, std::system_error if the file can't be read.
+/// Reads and checks a scene file, or with "-" standard input, of which the files are in the working folder.
+/// Each override is "key=value" with the key a dotted path ("solver.step", "cloth.particles",
+/// "solid[1].radius") and the value TOML; it is checked like the file. Throws SceneError with every problem
+/// found, std::system_error if the file can't be read.
 Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
 /// The same for a text that need not be a file; `name` stands for it in messages.

@@ -59,9 +59,9 @@ const std::array<MaterialPreset, 6> presets{{
     // Wang et al., "gray interlock": a T-shirt's knit, 60% cotton, 40% polyester.
     // c11 16.6, c22 34.5, c33 36.9, k 23.2e-6 and 14.3e-6
     {"jersey", 0.187, fabric("jersey", 33.2, 69.0, 18.4, 4.7e-6)},
-    // A latex sheet of 0.5 mm: E = 1 MPa, Poisson's ratio 1/2, 920 kg/m³; stretch E t, shear E t / 3,
-    // bend E t³ / (12 (1 − 1/4)).
-    {"rubber", 0.46, fabric("rubber", 500, 500, 167, 1.4e-5)},
+    // A latex sheet of 0.5 mm: E = 1 MPa, Poisson's ratio 1/2, 920 kg/m³; stretch, held in its width,
+    // E t / (1 − 1/4), shear E t / 3, bend E t³ / (12 (1 − 1/4)).
+    {"rubber", 0.46, fabric("rubber", 667, 667, 166.7, 1.4e-5)},
 }};
 
 constexpr std::string_view names[] = {"cotton", "silk", "denim", "wool", "jersey", "rubber"};

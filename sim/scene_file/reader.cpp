@@ -193,6 +193,47 @@ void Reader::optional_number(const Key& key, std::optional<double>& out, const B
     if (const Node* value = take(key); value && read_number(key.name, *value, bounds, number)) out = number;
 }
 
+namespace {
+
+// "a/b" of two whole numbers above zero.
+bool parse_quotient(const std::string& text, int& above, int& below) {
+    const char* end = text.data() + text.size();
+    const auto [slash, bad_above] = std::from_chars(text.data(), end, above);
+    if (bad_above != std::errc() || slash == end || *slash != '/') return false;
+    const auto [rest, bad_below] = std::from_chars(slash + 1, end, below);
+    return bad_below == std::errc() && rest == end && above > 0 && below > 0;
+}
+
+}  // namespace
+
+void Reader::rate(const Key& key, Rate& out, int low, int high) {
+    const Node* value = take(key);
+    if (!value) return;
+    const std::string_view hint = "write a whole number or a fraction of two such as \"30000/1001\"";
+    if (value->is(Node::Kind::text)) {
+        int above = 0, below = 0;
+        if (!parse_quotient(value->text, above, below)) {
+            report(key.name, value->place,
+                   fmt::format("'{}' can't be \"{}\"", key.name, printable(value->text.substr(0, 64))),
+                   std::string(hint));
+        } else if (above < static_cast<double>(low) * below || above > static_cast<double>(high) * below) {
+            report(key.name, value->place, fmt::format("'{}' is {}/{}", key.name, above, below),
+                   fmt::format("it must be from {} to {}", low, high));
+        } else {
+            out = Rate(above, below);
+        }
+        return;
+    }
+    if (value->is(Node::Kind::number)) {
+        report(key.name, value->place,
+               fmt::format("'{}' is no exact number of frames as {}", key.name, value->number),
+               std::string(hint));
+        return;
+    }
+    std::int64_t number = 0;
+    if (read_integer(key.name, *value, low, high, number)) out = static_cast<int>(number);
+}
+
 void Reader::fraction(const Key& key, double& out, const Bounds& bounds) {
     const Node* value = take(key);
     if (!value) return;
@@ -200,33 +241,26 @@ void Reader::fraction(const Key& key, double& out, const Bounds& bounds) {
         read_number(key.name, *value, bounds, out);
         return;
     }
-    const std::string& text = value->text;
     int above = 0, below = 0;
-    const char* end = text.data() + text.size();
-    const auto [slash, bad_above] = std::from_chars(text.data(), end, above);
-    if (bad_above == std::errc() && slash != end && *slash == '/') {
-        const auto [rest, bad_below] = std::from_chars(slash + 1, end, below);
-        if (bad_below == std::errc() && rest == end && above > 0 && below > 0) {
-            Node quotient = *value;
-            quotient.kind = Node::Kind::number;
-            quotient.number = static_cast<double>(above) / below;
-            read_number(key.name, quotient, bounds, out);
-            return;
-        }
+    if (parse_quotient(value->text, above, below)) {
+        Node quotient = *value;
+        quotient.kind = Node::Kind::number;
+        quotient.number = static_cast<double>(above) / below;
+        read_number(key.name, quotient, bounds, out);
+        return;
     }
     report(key.name, value->place,
-           fmt::format("'{}' can't be \"{}\"", key.name, printable(text.substr(0, 64))),
+           fmt::format("'{}' can't be \"{}\"", key.name, printable(value->text.substr(0, 64))),
            "write a number or a fraction of whole numbers such as \"1/240\"");
 }
 
 void Reader::text(const Key& key, std::string& out, TextKind kind) {
-    const Node* value = take(key);
-    if (!value) return;
-    if (!value->is(Node::Kind::text)) {
-        wrong_kind(key.name, *value, "a text");
-        return;
-    }
-    const std::string& text = value->text;
+    if (const Node* value = take(key)) read_text(key.name, *value, kind, out);
+}
+
+bool Reader::read_text(std::string_view key, const Node& value, TextKind kind, std::string& out) {
+    if (!value.is(Node::Kind::text)) return wrong_kind(key, value, "a text");
+    const std::string& text = value.text;
     std::string_view hint;
     if (kind == TextKind::color && (text.size() != 7 || text[0] != '#' ||
                                     text.find_first_not_of("0123456789abcdefABCDEF", 1) != text.npos))
@@ -234,12 +268,13 @@ void Reader::text(const Key& key, std::string& out, TextKind kind) {
     if (kind == TextKind::name && (text.empty() || text.size() > 64)) hint = "write 1 to 64 characters";
     if (kind == TextKind::path && (text.empty() || text.size() > 1024)) hint = "write 1 to 1024 characters";
     if (printable(text) != text) hint = "it has control characters";
-    if (hint.empty())
+    if (hint.empty()) {
         out = text;
-    else
-        report(key.name, value->place,
-               fmt::format("'{}' can't be \"{}\"", key.name, printable(text.substr(0, 64))),
-               std::string(hint));
+        return true;
+    }
+    report(key, value.place, fmt::format("'{}' can't be \"{}\"", key, printable(text.substr(0, 64))),
+           std::string(hint));
+    return false;
 }
 
 void Reader::word(const Key& key, std::string& out, std::span<const std::string_view> words) {

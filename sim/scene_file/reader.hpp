@@ -40,9 +40,11 @@ public:
     void numbers(const Key&, std::span<double>, const Bounds&) override;
     void number_or_pair(const Key&, std::array<double, 2>&, const Bounds&) override;
     void fraction(const Key&, double&, const Bounds&) override;
+    void rate(const Key&, Rate&, int low, int high) override;
     bool number_or_table(const Key&, double&, const Bounds&,
                          const std::function<void(Fields&)>& describe) override;
     void text(const Key&, std::string&, TextKind) override;
+    void texts(const Key&, std::vector<std::string>&, TextKind) override;
     void word(const Key&, std::string&, std::span<const std::string_view> words) override;
     void words(const Key&, std::vector<std::string>&, std::span<const std::string_view> words) override;
     void table(const Key&, const std::function<void(Fields&)>& describe) override;
@@ -63,6 +65,7 @@ private:
     bool read_number(std::string_view key, const Node& value, const Bounds&, double& out);
     bool read_integer(std::string_view key, const Node& value, std::int64_t low, std::int64_t high,
                       std::int64_t& out);
+    bool read_text(std::string_view key, const Node& value, TextKind, std::string& out);
     int read_word(std::string_view key, const Node& value, std::span<const std::string_view> words);
     void read_table(const std::string& path, const Node& value, const std::function<void(Fields&)>& describe);
     void report_unknown(const Entry&);

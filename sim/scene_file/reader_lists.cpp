@@ -56,6 +56,17 @@ void Reader::number_or_pair(const Key& key, std::array<double, 2>& out, const Bo
     }
 }
 
+void Reader::texts(const Key& key, std::vector<std::string>& out, TextKind kind) {
+    const Node* value = take(key);
+    if (!value) return;
+    const bool list = value->is(Node::Kind::list);
+    std::vector<std::string> read(list ? value->items.size() : 1);
+    for (std::size_t i = 0; i < read.size(); ++i) {
+        if (!read_text(key.name, list ? value->items[i] : *value, kind, read[i])) return;
+    }
+    out = std::move(read);
+}
+
 void Reader::words(const Key& key, std::vector<std::string>& out, std::span<const std::string_view> words) {
     const Node* value = take(key);
     if (!value) return;

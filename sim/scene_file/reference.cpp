@@ -49,6 +49,9 @@ public:
     void integer(const Key& key, int& value, int low, int high) override {
         row(key, fmt::format("{}", value), fmt::format("{} to {}", low, high));
     }
+    void rate(const Key& key, Rate& value, int low, int high) override {
+        row(key, rate_text(value), fmt::format("{} to {}", low, high));
+    }
     void integers(const Key& key, std::span<int> values, int low, int high) override {
         row(key, fmt::format("[{}]", fmt::join(values, ", ")),
             fmt::format("{} of {} to {}", values.size(), low, high));
@@ -81,6 +84,9 @@ public:
     void text(const Key& key, std::string& value, TextKind kind) override {
         constexpr std::string_view kinds[] = {"1 to 64 characters", "`\"#rrggbb\"`", "file name"};
         row(key, value.empty() ? "absent" : fmt::format("\"{}\"", value), kinds[static_cast<int>(kind)]);
+    }
+    void texts(const Key& key, std::vector<std::string>&, TextKind) override {
+        row(key, "absent", "file name, or a list of them");
     }
     void word(const Key& key, std::string&, std::span<const std::string_view> words) override {
         row(key, "absent", quoted(words));

@@ -44,6 +44,13 @@ public:
     void integer(const Key& key, int& value, int low, int high) override {
         put(key, {{"type", "integer"}, {"minimum", low}, {"maximum", high}}, value);
     }
+    void rate(const Key& key, Rate& value, int low, int high) override {
+        put(key,
+            {{"anyOf",
+              {{{"type", "integer"}, {"minimum", low}, {"maximum", high}},
+               {{"type", "string"}, {"pattern", "^[1-9][0-9]*/[1-9][0-9]*$"}}}}},
+            value.num);
+    }
     void integers(const Key& key, std::span<int> values, int low, int high) override {
         json item{{"type", "integer"}, {"minimum", low}, {"maximum", high}};
         put(key, list_of(std::move(item), values.size()), values);
@@ -76,6 +83,11 @@ public:
         json schema{{"type", "string"}, {"minLength", 1}};
         if (kind == TextKind::color) schema["pattern"] = "^#[0-9a-fA-F]{6}$";
         put(key, std::move(schema), value.empty() ? json() : json(value));
+    }
+    void texts(const Key& key, std::vector<std::string>&, TextKind) override {
+        const json one{{"type", "string"}, {"minLength", 1}};
+        json list{{"type", "array"}, {"items", one}, {"minItems", 1}, {"maxItems", max_includes}};
+        put(key, {{"anyOf", {one, std::move(list)}}}, nullptr);
     }
     void word(const Key& key, std::string&, std::span<const std::string_view> words) override {
         put(key, one_of_words(words), nullptr);

@@ -37,6 +37,9 @@ public:
 
     void flag(const Key& key, bool& value) override { put(key, value ? "true" : "false"); }
     void integer(const Key& key, int& value, int, int) override { put(key, fmt::format("{}", value)); }
+    void rate(const Key& key, Rate& value, int, int) override {
+        put(key, value.whole() ? rate_text(value) : toml_text(rate_text(value)));
+    }
     void integers(const Key& key, std::span<int> values, int, int) override { put(key, list_of(values)); }
     void seed(const Key& key, std::uint32_t& value) override { put(key, fmt::format("{}", value)); }
     void number(const Key& key, double& value, const Bounds&) override { put(key, number_text(value)); }
@@ -61,6 +64,11 @@ public:
     }
     void text(const Key& key, std::string& value, TextKind) override {
         if (!value.empty()) put(key, toml_text(value));
+    }
+    void texts(const Key& key, std::vector<std::string>& values, TextKind) override {
+        std::string list;
+        for (const std::string& value : values) list += (list.empty() ? "" : ", ") + toml_text(value);
+        if (!values.empty()) put(key, "[" + list + "]");
     }
     void word(const Key& key, std::string& value, std::span<const std::string_view>) override {
         if (!value.empty()) put(key, toml_text(value));

@@ -5,6 +5,7 @@
 
 #include "sim/constraints/pins.hpp"
 #include "sim/mesh/mesh_solid.hpp"
+#include "sim/solids/sdf.hpp"
 #include "sim/step/stage.hpp"
 
 namespace unravel::sim {
@@ -25,7 +26,7 @@ double input_of_forces(const ClothModel& model, const StepEnds& ends, StepWorksp
 
 // A solid that stands still takes only; putting particles out of it is no work that the cloth may keep.
 bool moves(const Solid& solid) {
-    return !solid.motion.empty() || (solid.geometry && solid.geometry->deforms());
+    return solid.moves() || (solid.geometry && solid.geometry->deforms());
 }
 
 // Of a step of several parts: whether anything that may have put energy in was there at all.
@@ -69,6 +70,17 @@ double work_of_constraints(const ClothModel& model, const ClothState& after, Ste
     return std::max(pins, 0.0) + std::max(solids, 0.0);
 }
 
+// Whether a particle at x, at the step's end, is inside a solid that moves.
+bool in_moving_solid(const ClothModel& model, const SolidPoses& poses, const Vec3& x) {
+    for (std::size_t s = 0; s < model.solids.size(); ++s) {
+        const Solid& solid = model.solids[s];
+        if (!moves(solid) || poses.reach[s].is_outside(x)) continue;
+        const Vec3 local = poses.next[s].inverse(Eigen::Isometry) * x;
+        if (nearest_surface(solid, poses.of(solid, s), true, local, 0.0).distance < 0) return true;
+    }
+    return false;
+}
+
 // What putting particles back out of moving solids (keep_outside()) has added to the step as it was solved.
 double gain_of_putting_back(const ClothModel& model, const ClothState& after, const StepReport& report,
                             StepWorkspace& ws) {
@@ -78,7 +90,13 @@ double gain_of_putting_back(const ClothModel& model, const ClothState& after, co
     for (std::size_t p = 0; p < model.size(); ++p) {
         v[p] = ws.stage.v_at[p] + ws.linear.dv[p];
         x[p] = ws.base()[p] + ws.stage.h * v[p];
-        any = any || x[p] != after.x[p];
+        if (x[p] == after.x[p]) continue;
+        if (in_moving_solid(model, ws.contact.poses, x[p])) {
+            any = true;
+        } else {
+            x[p] = after.x[p];
+            v[p] = after.v[p];
+        }
     }
     if (!any) return 0;
     StepReport solved;

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "sim/forces/curvature_split.hpp"
 #include "sim/integrators/scheme.hpp"
 #include "sim/mesh/mesh_cloth.hpp"
 
@@ -72,11 +75,11 @@ double stable_substeps(double h, double stable) {
 
 ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options, double h) {
     const Scheme& scheme = scheme_of(options.integrator);
-    const Splitting splitting = scheme.splitting(options.threshold);
+    const Splitting splitting = splitting_of(options);
     // What is pinned for good does not swing.
     std::vector<char> held(model.size(), 0);
     for (const PinnedGroup& pin : model.pins) {
-        for (const std::uint32_t p : pin.particles) held[p] = !std::isfinite(pin.release);
+        for (const std::uint32_t p : pin.particles) held[p] = !std::isfinite(pin.release) && !pin.slides();
     }
     std::vector<std::vector<Vec3>> normals(model.cloths.size());
     for (std::size_t c = 0; c < normals.size(); ++c) {
@@ -101,21 +104,27 @@ ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options
                 kappas[p] = std::max(kappas[p], of_spring);
             }
         }
+        const auto implicit = implicit_curvature(model.curvature, model.springs, model.mass, step, splitting);
+        const std::vector<double> bending =
+            curvature_bounds(model.curvature, model.mass, [&](std::size_t s) { return implicit[s] == 0; });
         double share = 0;
         for (std::uint32_t p = 0; p < model.size(); ++p) {
             if (held[p] != 0) continue;
-            const double here = 2 * larger_eigenvalue(blocks[p]) / (model.mass[p] * scheme.explicit_bound);
+            const double here =
+                (2 * larger_eigenvalue(blocks[p]) / model.mass[p] + step * step * bending[p]) /
+                scheme.explicit_bound;
             if (here <= share) continue;
             share = here;
-            if (out) *out = {share, p, kappas[p], 0};
+            if (out) *out = {share, p, std::max(kappas[p], step * step * bending[p] / 8), 0};
         }
         return share;
     };
     ExplicitLimit limit;
     share_at(h, &limit);
     limit.step = std::numeric_limits<double>::infinity();
-    const bool follows_step =
-        splitting.stretch_threshold >= 0 && splitting.stretch_threshold < always_explicit;
+    const bool follows_step = splitting.stretch_threshold < always_explicit &&
+                              splitting.shear_threshold < always_explicit &&
+                              splitting.bend_threshold < always_explicit;
     if (limit.share == 0 || follows_step) return limit;
     // The share grows with the step: at least linearly, at most as its square.
     double low = h / std::max(1.0, limit.share), high = h * std::max(1.0, 1.0 / limit.share);
@@ -143,7 +152,7 @@ void require_explicit_stability(const ClothModel& model, const StepOptions& opti
     const ExplicitLimit limit = explicit_limit(model, options, h);
     if (limit.share < 1) return;
     const std::string fault = fmt::format(
-        "the springs handled explicitly at particle {} reach kappa = {:.3g} (Eq. 7): {:.3g} times what a "
+        "what is handled explicitly at particle {} reaches kappa = {:.3g} (Eq. 7): {:.3g} times what a "
         "step "
         "of {:.4g} s bears",
         limit.particle, limit.kappa, limit.share, h);

@@ -8,19 +8,20 @@
 
 namespace unravel::sim {
 
-/// How near the springs that a scheme handles explicitly bring a step to its limit of stability.
+/// How near what a scheme handles explicitly brings a step to its limit of stability.
 ///
 /// Forward–backward Euler (paper Eq. 3) with explicit damping bears modes with h²λ + 2hμ < 4, λ and μ the
 /// eigenvalues of M⁻¹K and M⁻¹D; the second-order pair 3.2 (sim/integrators/bdf2.cpp). For springs alone,
 /// with particle i's own block K_i = Σ_j k ûûᵀ,
 ///   λ ≤ 2 max_i λmax(K_i)/m_i,
 /// and on a grid whose springs share one κ (7) the bound is 8κ: two stretch springs along a row and half of
-/// four diagonals. That is the paper's κ ≤ ½.
+/// four diagonals. That is the paper's κ ≤ ½. Bending that is linear in curvature adds its own bound
+/// (sim/forces/curvature_split.hpp). Arcs are limited to what a step bears.
 struct ExplicitLimit {
     double share =
         0;  ///< max (h²λ + 2hμ)/4, or its like, as bounded above, of the cloth laid flat; < 1: stable
     std::uint32_t particle = 0;  ///< where
-    double kappa = 0;            ///< largest κ of its explicit springs
+    double kappa = 0;            ///< largest κ of what is explicit there
     double step =
         0;  ///< s, largest stable step; +∞ where nothing is explicit, and for a split that follows h
 };

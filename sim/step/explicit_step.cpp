@@ -33,7 +33,7 @@ StepReport swept_step(const ClothModel& model, const StepOptions& options, doubl
     std::swap(state, ws.before);
     const ClothState& before = ws.before;
     begin_next(before, h, state);
-    ws.sweep.run(model, before, substeps, state, ws.constraints, report.contacts);
+    ws.sweep.run(model, before, substeps, options.solve.stop, state, ws.constraints, report.contacts);
     try {
         require_finite(state.v, before, h);
     } catch (const SimulationError&) {
@@ -62,6 +62,7 @@ StepReport substeps_in_turn(const ClothModel& model, const StepOptions& options,
     StepReport report;
     try {
         for (int k = 0; k < substeps; ++k) {
+            heed(options.solve.stop);
             StepOptions each = options;
             each.measure = options.measure && k + 1 == substeps;
             report = coupled_step(model, each, h / substeps, state, ws);

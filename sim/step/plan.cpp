@@ -53,6 +53,9 @@ void plan_cloths(const ClothModel& model, const StepOptions& options, StepPlan& 
                                 : by_rows || !plan.forces.by_rows
                                     ? plan.forces.because
                                     : fmt::format("{} {}", general->term->name, general->because);
+    const bool bends = std::ranges::any_of(plan.forces.terms, [](const ForcePlan::Term& planned) {
+        return planned.implicit && planned.term == &bending_term;
+    });
     for (const ClothPatch& patch : model.cloths) {
         StepPlan::Cloth& cloth = plan.cloths.emplace_back();
         cloth.name = patch.name;
@@ -61,6 +64,9 @@ void plan_cloths(const ClothModel& model, const StepOptions& options, StepPlan& 
         if (explicit_step) {
             cloth.solver = "none";
             cloth.solver_because = "nothing is implicit";
+        } else if (patch.grid() && bends) {
+            cloth.solver = "rows in double precision";
+            cloth.solver_because = "bending is implicit, which couples by more than a grid's springs";
         } else if (!patch.grid() || !may_use_grids(options.solve)) {
             cloth.solver = "rows in double precision";
             cloth.solver_because = patch.grid() ? "solver.preconditioner or solver.tolerance asks for it"
@@ -85,9 +91,15 @@ StepOptions step_options(const Solver& solver) {
     options.activation = solver.activation;
     options.activation_band = solver.activation_band;
     options.substeps = solver.substeps;
-    options.solve = {solver.preconditioner, solver.tolerance, solver.max_iterations};
+    options.solve = {solver.preconditioner, solver.tolerance, solver.max_iterations, nullptr};
     options.decompose = solver.decompose;
     return options;
+}
+
+Splitting splitting_of(const StepOptions& options) {
+    Splitting splitting = scheme_of(options.integrator).splitting(options.threshold);
+    if (options.bend == BendTreatment::explicit_) splitting.bend_threshold = always_explicit;
+    return splitting;
 }
 
 const char* way_name(StepPlan::Way way) {
@@ -132,10 +144,8 @@ PlanMemory::Key plan_key(const ClothModel& model, const StepOptions& options, do
 }
 
 ForcePlan plan_forces(const ClothModel& model, const StepOptions& options, double h, bool looks_ahead) {
-    const Scheme& scheme = scheme_of(options.integrator);
     ForcePlan plan;
-    plan.settings = {h, scheme.splitting(options.threshold), options.activation_band,
-                     scheme.implicit_bend && options.bend == BendTreatment::scheme, false};
+    plan.settings = {h, splitting_of(options), options.activation_band, false};
     const Splitting& splitting = plan.settings.splitting;
     plan.settings.all_explicit =
         splitting.stretch_threshold >= always_explicit && splitting.shear_threshold >= always_explicit;
@@ -143,7 +153,7 @@ ForcePlan plan_forces(const ClothModel& model, const StepOptions& options, doubl
     plan.by_rows = plan.because.empty();
     if (plan.by_rows) plan.because = "every cloth is a grid";
     each_term(model, [&](const ForceTerm& term) {
-        const bool implicit = term.may_be_implicit && term.may_be_implicit(plan.settings);
+        const bool implicit = term.may_be_implicit && term.may_be_implicit(model, plan.settings);
         const bool has_rows = term.part_of_rows || (term.rows && (!implicit || term.rows->splits));
         const bool stiffens = term.stiffen && !plan.settings.all_explicit;
         plan.terms.push_back({&term, plan.by_rows && has_rows, implicit, stiffens,

@@ -29,6 +29,9 @@ struct StepOptions {
 
 StepOptions step_options(const Solver& solver);
 
+/// How the options' scheme splits springs and bending.
+Splitting splitting_of(const StepOptions& options);
+
 /// Which code evaluates the forces of a coupled step, decided once for a model, a size of step and its
 /// options.
 struct ForcePlan {

@@ -11,6 +11,11 @@ namespace {
 
 // Newton's method gives up after this many linearisations; a step that needs more is too large.
 constexpr int newton_limit = 30;
+// Strain that a spring may come to in the step in which it goes taut before it is made to act in that step:
+// what it pulls too late is then a hundredth of what it can bear at most, and most steps have none such.
+constexpr double missed_strain = 0.01;
+// Solves after the first for what was missed: springs that act make others act.
+constexpr int most_solves_again = 4;
 // Halvings of a Newton step that would increase the residual.
 constexpr int newton_halvings = 4;
 
@@ -35,11 +40,16 @@ void add_forces(const ClothModel& model, StepWorkspace& ws) {
     }
     const Stage& stage = ws.stage;
     const bool rubbed = !ws.contact.friction.empty();
+    const bool surfaces = !ws.contact.surfaces.stencils.empty();
+    const auto pushed = [&](std::size_t p) {
+        return surfaces ? contact_force(ws.contact.surfaces, static_cast<std::uint32_t>(p))
+                        : Vec3(Vec3::Zero());
+    };
     ws.linear.impulse.resize(model.size());
     parallel_each(model.size(), [&](std::size_t p) {
         const Vec3 friction = rubbed ? ws.contact.friction[p] : Vec3(Vec3::Zero());
-        ws.linear.impulse[p] =
-            friction + stage.h_force * forces.sum[p] + model.mass[p] * (stage.v[p] - stage.v_at[p]);
+        ws.linear.impulse[p] = friction + stage.h_force * (forces.sum[p] + pushed(p)) +
+                               model.mass[p] * (stage.v[p] - stage.v_at[p]);
     });
 }
 
@@ -107,6 +117,37 @@ void place_linearisation(const ClothModel& model, const StepOptions& options, St
     });
 }
 
+// Where the step would end if nothing but gravity and the constraints changed v*.
+std::span<const Vec3> foresee(const ClothModel& model, StepWorkspace& ws) {
+    const Stage& stage = ws.stage;
+    const std::span<const Vec3> base = ws.base();
+    std::vector<Vec3>& foreseen = ws.contact.foreseen;
+    foreseen.resize(model.size());
+    parallel_each(model.size(), [&](std::size_t p) {
+        const Constraint* c = ws.constraints.find(static_cast<std::uint32_t>(p));
+        const Vec3 fall = stage.h_force * model.gravity;
+        const Vec3 dv = c ? Vec3(c->S * (fall - c->z) + c->z) : fall;
+        foreseen[p] = base[p] + stage.h * (stage.v_at[p] + dv);
+    });
+    return foreseen;
+}
+
+// Contact of cloth with cloth and of edges and faces with solids, between surfaces, at (x*, v*).
+void find_surface_contacts(const ClothModel& model, StepWorkspace& ws) {
+    const Stage& stage = ws.stage;
+    const ForceSettings& settings = ws.plan.forces.settings;
+    const double threshold = settings.splitting.stretch_threshold;
+    SurfaceContactWorkspace& surfaces = ws.contact.surfaces;
+    const std::span<const Vec3> foreseen = foresee(model, ws);
+    begin_contacts(surfaces);
+    if (model.cloth_by_surfaces())
+        find_contacts(model, stage.x_at, stage.v_at, foreseen, settings.h, threshold, surfaces);
+    if (model.solids_by_surfaces())
+        find_solid_contacts(model, ws.contact.poses, stage.x_at, stage.v_at, foreseen, settings.h, threshold,
+                            surfaces);
+    end_contacts(model.size(), surfaces);
+}
+
 // Sum over particles of |S y|²/m, of the stage's right-hand side y: what Newton's method makes small.
 double residual_of(const ClothModel& model, const StepWorkspace& ws) {
     double sum = 0;
@@ -146,6 +187,9 @@ StepCouplings couplings_of(const ClothModel& model, const StepWorkspace& ws) {
         if (planned.implicit || planned.stiffens)
             planned.term->couple(model, at, ws.forces.memory, couplings);
     }
+    const SurfaceContactWorkspace& surfaces = ws.contact.surfaces;
+    if (!surfaces.stencils.empty())
+        couplings.stencils.push_back({surfaces.stencils, surfaces.state, at.drift_from_start});
     return couplings;
 }
 
@@ -192,6 +236,10 @@ void linearise(const ClothModel& model, const StepOptions& options, StageTimer& 
                StepReport& report) {
     const Stage& stage = ws.stage;
     LinearStage& linear = ws.linear;
+    if (model.by_surfaces()) {
+        find_surface_contacts(model, ws);
+        timer.lap(report.times.collision);
+    }
     place_linearisation(model, options, ws);
     timer.lap(report.times.forces);
     for (const ForcePlan::Term& planned : ws.plan.forces.terms) {
@@ -209,7 +257,8 @@ void linearise(const ClothModel& model, const StepOptions& options, StageTimer& 
     drift_from(forces_at(ws).linearised_at(), linear.drift);
     linear.drift_from_start.clear();
     const auto implicit = [](const ForcePlan::Term& planned) { return planned.implicit; };
-    if (!ws.forces.ahead.empty() && std::ranges::count_if(ws.plan.forces.terms, implicit) > 1)
+    if (!ws.forces.ahead.empty() &&
+        (!ws.contact.surfaces.stencils.empty() || std::ranges::count_if(ws.plan.forces.terms, implicit) > 1))
         drift_from(stage.x_at, linear.drift_from_start);
     timer.lap(report.times.forces);
 }
@@ -252,17 +301,23 @@ void predict_taut(const ClothModel& model, std::span<const Vec3> dv, StepWorkspa
     if (ws.plan.forces.by_rows) {
         ws.forces.rows.mark(model, end, ws.forces.taut);
     } else {
-        mark_taut(model.springs, end, {}, ws.forces.taut);
+        mark_taut(model.springs, end, ws.forces.taut);
     }
 }
 
 void solve_again_where_taut(const ClothModel& model, const StepOptions& options, StageTimer& timer,
                             StepWorkspace& ws, StepReport& report) {
-    const std::span<const Vec3> end = predict(ws.linear.dv, ws);
-    if (!mark_taut(model.springs, end, ws.forces.memory.springs, ws.forces.taut)) return;
-    linearise(model, options, timer, ws, report);
-    ws.linear.guess = ws.linear.dv;
-    solve_stage(model, options, ws.linear.guess, timer, ws, report);
+    const bool once = options.activation == Activation::resolve;
+    const ForceSettings& settings = ws.plan.forces.settings;
+    for (int k = 0; k < (once ? 1 : most_solves_again); ++k) {
+        const std::span<const Vec3> end = predict(ws.linear.dv, ws);
+        if (!mark_missed(model.springs, model.mass, settings.h, settings.splitting, end,
+                         ws.forces.memory.springs, once ? 0.0 : missed_strain, ws.forces.taut))
+            return;
+        linearise(model, options, timer, ws, report);
+        ws.linear.guess = ws.linear.dv;
+        solve_stage(model, options, ws.linear.guess, timer, ws, report);
+    }
 }
 
 void iterate(const ClothModel& model, const StepOptions& options, StageTimer& timer, StepWorkspace& ws,

@@ -35,7 +35,8 @@ void solve_stage(const ClothModel& model, const StepOptions& options, std::span<
 /// `dv` (particles) is Δv [m/s].
 void predict_taut(const ClothModel& model, std::span<const Vec3> dv, StepWorkspace& ws);
 
-/// A second solve where the first over-extends springs that were slack: they join in from the start.
+/// A second solve where the first over-extends springs that were slack, by what may not be missed: they join
+/// in from the start.
 void solve_again_where_taut(const ClothModel& model, const StepOptions& options, StageTimer& timer,
                             StepWorkspace& ws, StepReport& report);
 

@@ -70,6 +70,62 @@ void find_reactions(const ClothModel& model, StepWorkspace& ws) {
     });
 }
 
+namespace {
+
+// Contacts that pulled strongly in the last step and, though let go, do in this one.
+std::uint32_t count_pulling(const ClothModel& model, std::span<const Contact> last,
+                            std::span<const Contact> now) {
+    constexpr double strongly = 10;  // times the particle's weight
+    const auto pulls = [&](const Contact& c) {
+        return c.force < -strongly * model.mass[c.particle] * model.gravity.norm();
+    };
+    std::uint32_t count = 0;
+    auto other = last.begin();
+    for (const Contact& c : now) {
+        const auto place = [](const Contact& k) { return std::pair(k.particle, k.solid); };
+        while (other != last.end() && place(*other) < place(c)) ++other;
+        count += other != last.end() && place(*other) == place(c) && pulls(c) && pulls(*other);
+    }
+    return count;
+}
+
+// No surface passes through another on the way to the step's end; what is stopped moves accordingly.
+void stop_impacts(const ClothModel& model, double h, const ClothState& state, StepWorkspace& ws,
+                  ClothState& next, StepReport& report) {
+    StageTimer timer;
+    const std::vector<Vec3> free = next.x;
+    std::vector<std::uint8_t>& fixed = ws.contact.apart.fixed;
+    fixed.assign(model.size(), 0);
+    for (const Constraint& c : ws.constraints.all()) fixed[c.particle] = 1;
+    for (const Touch& touch : ws.contact.touches) fixed[touch.contact.particle] = 0;
+    const Apart apart =
+        keep_apart(model, state.x, ws.constraints, fixed, next.x, ws.contact.surfaces, ws.contact.apart);
+    if (!apart.kept) {
+        StepFailure failure;
+        failure.criterion = Criterion::pinched;
+        failure.step = state.step + 1;
+        failure.t = state.t;
+        failure.h = h;
+        failure.particles.assign(apart.particles.begin(), apart.particles.end());
+        failure.advice = "let the pins or solids leave the layers room between them";
+        std::swap(next, ws.before);
+        throw SimulationError(
+            fmt::format("step {} (from {:.6g} s, {:.6g} s long): what holds particle {} drives its cloth "
+                        "through other cloth; {}",
+                        failure.step, failure.t, h, apart.particles[0], failure.advice),
+            failure);
+    }
+    parallel_each(next.x.size(), [&](std::size_t p) {
+        const Vec3 change = (next.x[p] - free[p]) / ws.stage.h;
+        if (change.isZero(0)) return;
+        next.v[p] += change;
+        next.dv[p] += change;
+    });
+    timer.lap(report.times.collision);
+}
+
+}  // namespace
+
 void require_finite(std::span<const Vec3> v, const ClothState& state, double h) {
     for (std::uint32_t p = 0; p < v.size(); ++p) {
         if (v[p].allFinite()) continue;
@@ -114,6 +170,7 @@ ClothState initial_state(const Placement& placement) {
 
 StepReport step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                 StepWorkspace& ws) {
+    heed(options.solve.stop);
     const StepPlan& plan = plan_step(model, options, h, ws);
     StepOptions planned = options;
     planned.integrator = plan.integrator;
@@ -160,7 +217,7 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     const bool iterates = scheme.iterates || options.energy_limit;
     if (iterates) {
         iterate(model, options, timer, ws, report);
-    } else if (options.activation == Activation::resolve) {
+    } else if (options.activation == Activation::resolve || options.activation == Activation::predicted) {
         solve_again_where_taut(model, options, timer, ws, report);
     }
     require_finite(ws.linear.dv, state, h);
@@ -173,6 +230,7 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
         find_reactions(model, ws);
         judge_touches(model.solids, view, ws.constraints, ws.contact.reaction, ws.contact.touches,
                       state.contacts);
+        report.pulling = count_pulling(model, before.contacts, state.contacts);
         timer.lap(report.times.contact);
     }
 
@@ -185,6 +243,10 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     });
     if (!model.solids.empty())
         keep_outside(model.solids, ws.contact.poses, ws.constraints, h, state.x, state.v);
+    if (model.solids_by_surfaces()) {
+        keep_edges_outside(model, ws.contact.poses, ws.constraints, h, ws.contact.surfaces, state.x, state.v);
+    }
+    if (model.cloth_by_surfaces()) stop_impacts(model, h, before, ws, state, report);
     if (scheme.multistep) remember(h, before, ws, state);
     timer.lap(report.times.advance);
 
@@ -193,6 +255,10 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     count_springs(couplings_of(model, ws), report);
     for (const ForcePlan::Term& planned : ws.plan.forces.terms) {
         if (planned.term->count) planned.term->count(ws.forces.memory, report);
+    }
+    if (model.cloth_by_surfaces()) {
+        report.self_contacts = static_cast<std::uint32_t>(ws.contact.surfaces.stencils.size());
+        report.self_distance = ws.contact.surfaces.least_distance;
     }
     finish_report(model, options, state, timer, ws, report);
     return report;

@@ -14,7 +14,7 @@ ClothState initial_state(const Placement& placement);
 const StepPlan& plan_step(const ClothModel& model, const StepOptions& options, double h, StepWorkspace& ws);
 
 /// Advances the state by h seconds; ws.before is then what it was. Throws SimulationError where a velocity
-/// would not be finite; the state is then what it was before.
+/// would not be finite; the state is then what it was before. Throws Stopped where options.solve.stop asks.
 StepReport step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                 StepWorkspace& ws);
 

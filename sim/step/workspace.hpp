@@ -7,6 +7,8 @@
 #include "sim/linear/solve.hpp"
 #include "sim/linear/system.hpp"
 #include "sim/model/state.hpp"
+#include "sim/self_collision/keep_apart.hpp"
+#include "sim/self_collision/solid_contact.hpp"
 #include "sim/step/plan.hpp"
 #include "sim/step/solve_components.hpp"
 #include "sim/sweep/explicit_sweep.hpp"
@@ -19,7 +21,7 @@ namespace unravel::sim {
 /// thing from the stage that fills it to the end of the step; others than the step look at it through
 /// sim/step/trace.hpp.
 
-/// Contact with solids; empty without them.
+/// Contact; empty where a scene has neither solids nor self-collision.
 struct ContactStage {
     SolidPoses poses;
     std::vector<std::vector<Touch>> found;  ///< (chunks of particles)
@@ -27,6 +29,10 @@ struct ContactStage {
     std::vector<Vec3> corrected;  ///< (particles) x̃ with the contacts' depth corrections [m]
     std::vector<Vec3> friction;   ///< (particles) kg·m/s
     std::vector<Vec3> reaction;   ///< (constraints) A Δv − b, what holds each [kg·m/s]
+    /// Between surfaces: of cloth with cloth, and of edges and faces with solids.
+    SurfaceContactWorkspace surfaces;
+    std::vector<Vec3> foreseen;  ///< (particles) where the step would end without it [m]
+    KeepApartWorkspace apart;
 };
 
 /// Forces at (x*, v*), and where they are linearised.

@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace unravel::sim {
 
@@ -12,9 +14,15 @@ namespace {
 // Leaves searched by one task.
 constexpr std::size_t leaves_of_task = 16;
 
-// Whether the volume abcd is positive, or zero. Sorting the corners first makes the answer the same for
-// everyone but for the sign that an odd permutation turns.
-bool is_positive(std::array<std::uint32_t, 4> particle, std::array<const Vec3*, 4> x) {
+// An edge that leaves a triangle's plane by less than this share of its length lies in it: of what is flat,
+// all volumes are rounding.
+constexpr long double in_plane = 1e-10L;
+
+using Long = Eigen::Matrix<long double, 3, 1>;
+
+// Six times the volume abcd. Sorting the corners first makes its sign the same for everyone but for the turn
+// of an odd permutation.
+long double volume(std::array<std::uint32_t, 4> particle, std::array<const Vec3*, 4> x) {
     bool turned = false;
     for (std::size_t pass = 0; pass < 3; ++pass) {
         for (std::size_t k = 0; k + 1 < 4 - pass; ++k) {
@@ -24,23 +32,27 @@ bool is_positive(std::array<std::uint32_t, 4> particle, std::array<const Vec3*, 
             turned = !turned;
         }
     }
-    using Long = Eigen::Matrix<long double, 3, 1>;
     const Long origin = x[3]->cast<long double>();
     const Long a = x[0]->cast<long double>() - origin, b = x[1]->cast<long double>() - origin,
                c = x[2]->cast<long double>() - origin;
-    return (a.dot(b.cross(c)) >= 0) != turned;
+    const long double sorted = a.dot(b.cross(c));
+    // Of a volume of zero, positive as sorted: the smallest number stands for it.
+    const long double signed_ = sorted != 0 ? sorted : std::numeric_limits<long double>::min();
+    return turned ? -signed_ : signed_;
 }
 
 }  // namespace
 
 bool passes_through(const std::array<std::uint32_t, 5>& particles, const std::array<Vec3, 5>& x) {
-    const auto positive = [&](std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
-        return is_positive({particles[i], particles[j], particles[k], particles[l]},
-                           {&x[i], &x[j], &x[k], &x[l]});
+    const auto of = [&](std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
+        return volume({particles[i], particles[j], particles[k], particles[l]}, {&x[i], &x[j], &x[k], &x[l]});
     };
-    if (positive(2, 3, 4, 0) == positive(2, 3, 4, 1)) return false;
-    const bool side = positive(0, 1, 2, 3);
-    return positive(0, 1, 3, 4) == side && positive(0, 1, 4, 2) == side;
+    const long double from = of(2, 3, 4, 0), to = of(2, 3, 4, 1);
+    if ((from > 0) == (to > 0)) return false;
+    const bool side = of(0, 1, 2, 3) > 0;
+    if ((of(0, 1, 3, 4) > 0) != side || (of(0, 1, 4, 2) > 0) != side) return false;
+    const double size = (x[3] - x[2]).norm() * (x[4] - x[2]).norm() * (x[1] - x[0]).norm();
+    return std::abs(from - to) > in_plane * static_cast<long double>(size);
 }
 
 std::vector<Crossing> find_crossings(const Surface& surface, std::span<const Vec3> x, SurfaceTree& tree) {
@@ -49,6 +61,9 @@ std::vector<Crossing> find_crossings(const Surface& surface, std::span<const Vec
     tree.refit(surface, boxes);
     const std::size_t leaves = tree.leaves(), tasks = (leaves + leaves_of_task - 1) / leaves_of_task;
     std::vector<std::vector<Crossing>> found(tasks);
+    const auto differ = [&](std::uint32_t p, std::uint32_t q) {
+        return surface.joint[p] != surface.joint[q];
+    };
     const auto try_leaves = [&](std::uint32_t edges_of, std::uint32_t triangles_of,
                                 std::vector<Crossing>& out) {
         for (const std::uint32_t e : tree.edges.of(edges_of)) {
@@ -56,7 +71,9 @@ std::vector<Crossing> find_crossings(const Surface& surface, std::span<const Vec
             for (const std::uint32_t t : tree.triangles.of(triangles_of)) {
                 if (!tree.edge_box[e].overlaps(tree.triangle_box[t])) continue;
                 const auto& [a, b, c] = surface.triangles[t];
-                if (p == a || p == b || p == c || q == a || q == b || q == c) continue;
+                if (!differ(p, a) || !differ(p, b) || !differ(p, c) || !differ(q, a) || !differ(q, b) ||
+                    !differ(q, c))
+                    continue;
                 if (passes_through({p, q, a, b, c}, {x[p], x[q], x[a], x[b], x[c]})) out.push_back({e, t});
             }
         }

@@ -18,13 +18,14 @@ struct LeafPairs {
     PairList& vertex_triangle;
     PairList& edge_edge;
 
+    bool differ(std::uint32_t p, std::uint32_t q) const { return surface.joint[p] != surface.joint[q]; }
     void try_vertices(std::uint32_t vertices_of, std::uint32_t triangles_of) {
         for (const std::uint32_t p : tree.vertices.of(vertices_of)) {
             const Box& box = tree.vertex_box[p];
             for (const std::uint32_t t : tree.triangles.of(triangles_of)) {
                 if (!box.overlaps(tree.triangle_box[t])) continue;
                 const auto& [a, b, c] = surface.triangles[t];
-                if (p != a && p != b && p != c) vertex_triangle.push_back({p, t});
+                if (differ(p, a) && differ(p, b) && differ(p, c)) vertex_triangle.push_back({p, t});
             }
         }
     }
@@ -35,7 +36,7 @@ struct LeafPairs {
             for (const std::uint32_t g : tree.edges.of(other)) {
                 if ((one == other && g <= e) || !box.overlaps(tree.edge_box[g])) continue;
                 const auto& [c, d] = surface.edges[g];
-                if (a != c && a != d && b != c && b != d)
+                if (differ(a, c) && differ(a, d) && differ(b, c) && differ(b, d))
                     edge_edge.push_back({std::min(e, g), std::max(e, g)});
             }
         }
@@ -47,28 +48,52 @@ struct LeafPairs {
     }
 };
 
-void join(const std::vector<PairList>& parts, PairList& out) {
-    out.clear();
-    for (const PairList& part : parts) out.insert(out.end(), part.begin(), part.end());
+void join(const std::vector<FeaturePairs::Found>& parts, FeaturePairs& out) {
+    out.vertex_triangle.clear();
+    out.edge_edge.clear();
+    out.blocks.clear();
+    for (const FeaturePairs::Found& part : parts) {
+        const auto vt = static_cast<std::uint32_t>(out.vertex_triangle.size());
+        const auto ee = static_cast<std::uint32_t>(out.edge_edge.size());
+        for (FeaturePairs::Block block : part.blocks) {
+            block.vt_begin += vt;
+            block.vt_end += vt;
+            block.ee_begin += ee;
+            block.ee_end += ee;
+            out.blocks.push_back(block);
+        }
+        out.vertex_triangle.insert(out.vertex_triangle.end(), part.vertex_triangle.begin(),
+                                   part.vertex_triangle.end());
+        out.edge_edge.insert(out.edge_edge.end(), part.edge_edge.begin(), part.edge_edge.end());
+    }
 }
 
 }  // namespace
 
 void find_pairs(const Surface& surface, const SurfaceTree& tree, FeaturePairs& out) {
     const std::size_t leaves = tree.leaves(), groups = (leaves + group_size - 1) / group_size;
-    out.found_vt.resize(groups);
-    out.found_ee.resize(groups);
+    out.found.resize(groups);
     tbb::parallel_for(std::size_t{0}, groups, [&](std::size_t group) {
-        out.found_vt[group].clear();
-        out.found_ee[group].clear();
-        LeafPairs pairs{surface, tree, out.found_vt[group], out.found_ee[group]};
+        FeaturePairs::Found& found = out.found[group];
+        found.vertex_triangle.clear();
+        found.edge_edge.clear();
+        found.blocks.clear();
+        LeafPairs pairs{surface, tree, found.vertex_triangle, found.edge_edge};
+        const auto counts = [&] {
+            return std::array{static_cast<std::uint32_t>(found.vertex_triangle.size()),
+                              static_cast<std::uint32_t>(found.edge_edge.size())};
+        };
         for (std::size_t k = group * group_size; k < std::min(leaves, (group + 1) * group_size); ++k) {
             const auto leaf = static_cast<std::uint32_t>(k);
-            tree.each_partner(leaf, [&](std::uint32_t other) { pairs(leaf, other); });
+            tree.each_partner(leaf, [&](std::uint32_t other) {
+                const auto [vt, ee] = counts();
+                pairs(leaf, other);
+                const auto [vt_end, ee_end] = counts();
+                if (vt_end > vt || ee_end > ee) found.blocks.push_back({leaf, other, vt, vt_end, ee, ee_end});
+            });
         }
     });
-    join(out.found_vt, out.vertex_triangle);
-    join(out.found_ee, out.edge_edge);
+    join(out.found, out);
 }
 
 }  // namespace unravel::sim

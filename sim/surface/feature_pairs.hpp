@@ -16,7 +16,18 @@ using PairList = std::vector<std::array<std::uint32_t, 2>>;
 /// Pairs of features that are near each other and have no corner in common, and the memory of their search.
 struct FeaturePairs {
     PairList vertex_triangle, edge_edge;
-    std::vector<PairList> found_vt, found_ee;  ///< (groups of leaves)
+    /// Pairs of two leaves of the tree, or within one: [begin, end) of either list, one block after the
+    /// other.
+    struct Block {
+        std::uint32_t one = 0, other = 0;  ///< leaves
+        std::uint32_t vt_begin = 0, vt_end = 0, ee_begin = 0, ee_end = 0;
+    };
+    std::vector<Block> blocks;  ///< those that have pairs
+    struct Found {
+        PairList vertex_triangle, edge_edge;
+        std::vector<Block> blocks;
+    };
+    std::vector<Found> found;  ///< (groups of leaves)
 };
 
 /// Finds all pairs whose boxes (SurfaceTree::refit) overlap. Their order follows from the tree's shape alone.

@@ -1,6 +1,7 @@
 #include "sim/surface/surface.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace unravel::sim {
 
@@ -67,6 +68,10 @@ void SurfaceBuilder::add_face(std::span<const std::uint32_t> corners) {
         out_.triangles.push_back({corners[0], corners[k - 1], corners[k]});
 }
 
+void SurfaceBuilder::sew(std::uint32_t p, std::uint32_t q) {
+    seams_.push_back({p, q});
+}
+
 Surface SurfaceBuilder::build() {
     Surface out = std::move(out_);
     for (const auto& [a, b, c] : out.triangles) {
@@ -90,7 +95,19 @@ Surface SurfaceBuilder::build() {
     out.vertices.erase(std::unique(out.vertices.begin(), out.vertices.end()), out.vertices.end());
     out.triangles_at = features_at(out.particles(), out.triangles);
     out.edges_at = features_at(out.particles(), out.edges);
+    out.joint.resize(out.particles());
+    std::iota(out.joint.begin(), out.joint.end(), 0u);
+    const auto root = [&](std::uint32_t p) {
+        while (out.joint[p] != p) p = out.joint[p];
+        return p;
+    };
+    for (const auto& [p, q] : seams_) {
+        const std::uint32_t a = root(p), b = root(q);
+        out.joint[std::max(a, b)] = std::min(a, b);
+    }
+    for (std::uint32_t p = 0; p < out.joint.size(); ++p) out.joint[p] = root(p);
     out_ = {};
+    seams_.clear();
     return out;
 }
 

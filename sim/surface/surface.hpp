@@ -31,6 +31,7 @@ struct Surface {
     std::vector<std::uint32_t> vertices;              ///< particles that edges end at, sorted
     Lists triangles_at, edges_at;                     ///< of each particle
     std::vector<std::uint32_t> cloth;                 ///< (particles)
+    std::vector<std::uint32_t> joint;  ///< (particles) the smallest that it is sewn to, or itself
     std::size_t particles() const { return cloth.size(); }
 };
 
@@ -44,12 +45,15 @@ public:
     /// add_face().
     void add_mesh(std::uint32_t first, std::uint32_t count);
     void add_face(std::span<const std::uint32_t> corners);
+    /// Two particles that a seam brings together: what ends at one and at the other has a corner in common.
+    void sew(std::uint32_t p, std::uint32_t q);
 
     Surface build();
 
 private:
     void begin_cloth(std::uint32_t first, std::uint32_t count);
     Surface out_;
+    std::vector<std::array<std::uint32_t, 2>> seams_;
 };
 
 }  // namespace unravel::sim

@@ -128,12 +128,23 @@ struct SurfaceTree::Builder {
         };
         pack(edges_of, tree.edges);
         pack(vertices_of, tree.vertices);
+        std::vector<std::vector<std::uint32_t>> corners_of(tree.leaves());
+        for (std::uint32_t leaf = 0; leaf < tree.leaves(); ++leaf) {
+            std::vector<std::uint32_t>& corners = corners_of[leaf];
+            for (const std::uint32_t t : tree.triangles.of(leaf))
+                corners.insert(corners.end(), surface.triangles[t].begin(), surface.triangles[t].end());
+            for (const std::uint32_t e : tree.edges.of(leaf))
+                corners.insert(corners.end(), surface.edges[e].begin(), surface.edges[e].end());
+            std::sort(corners.begin(), corners.end());
+            corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+        }
+        pack(corners_of, tree.corners);
     }
 };
 
 SurfaceTree::SurfaceTree(const Surface& surface, std::span<const Vec3> x) {
     Builder builder{surface, *this, {}};
-    triangles.start = edges.start = vertices.start = {0};
+    triangles.start = edges.start = vertices.start = corners.start = {0};
     builder.add_items(x);
     if (builder.items.empty()) return;
     nodes_.resize(1);
@@ -145,9 +156,9 @@ void SurfaceTree::refit(const Surface& surface, std::span<const Box> particles) 
     vertex_box.assign(particles.begin(), particles.end());
     edge_box.resize(surface.edges.size());
     triangle_box.resize(surface.triangles.size());
-    const auto around = [&](const auto& corners) {
-        Box box = particles[corners[0]];
-        for (std::size_t k = 1; k < corners.size(); ++k) box.include(particles[corners[k]]);
+    const auto around = [&](const auto& ends) {
+        Box box = particles[ends[0]];
+        for (std::size_t k = 1; k < ends.size(); ++k) box.include(particles[ends[k]]);
         return box;
     };
     parallel_each(edge_box.size(), [&](std::size_t e) { edge_box[e] = around(surface.edges[e]); });

@@ -33,6 +33,7 @@ public:
     std::size_t leaves() const { return triangles.start.empty() ? 0 : triangles.start.size() - 1; }
     /// What belongs to each leaf, each feature to one: those of leaf k in list[start[k] … start[k + 1]).
     Lists triangles, edges, vertices;
+    Lists corners;                                        ///< of each leaf: all corners of those, each once
     std::vector<Box> vertex_box, edge_box, triangle_box;  ///< (particles), (edges), (triangles)
 
     /// Calls f(other) for each leaf whose box overlaps that of `leaf` and whose number is not smaller.

@@ -50,22 +50,30 @@ std::size_t levels_of(const SweptCloth& cloth, std::size_t substeps, std::size_t
     return std::clamp<std::size_t>(std::min({fit, share, room}), 1, most_levels);
 }
 
-void sweep_alone(const ClothModel& model, SweepMemory& memory, SweptCloth& cloth) {
+void sweep_alone(const ClothModel& model, SweepMemory& memory, SweptCloth& cloth, StopFlag stop) {
     GroupSweep sweep(model, cloth, memory.substeps, memory.h, levels_of(cloth, memory.substeps.size(), 1));
-    for (std::size_t group = 0; group < sweep.groups(); ++group)
+    for (std::size_t group = 0; group < sweep.groups(); ++group) {
+        heed(stop);
         sweep.run(group, nullptr, memory.workers.local());
+    }
 }
 
-// Groups are taken in order, so that whoever waits for one waits for a thread that is at it.
-void sweep_together(const ClothModel& model, SweepMemory& memory, SweptCloth& cloth, std::size_t threads) {
+// Groups are taken in order, so that whoever waits for one waits for a thread that is at it: one that was
+// taken is swept to its end.
+void sweep_together(const ClothModel& model, SweepMemory& memory, SweptCloth& cloth, std::size_t threads,
+                    StopFlag stop) {
     GroupSweep sweep(model, cloth, memory.substeps, memory.h,
                      levels_of(cloth, memory.substeps.size(), threads));
     for (std::size_t group = 0; group < sweep.groups(); ++group) memory.passed[group] = 0;
     std::atomic<std::size_t> next{0};
     tbb::parallel_for(std::size_t{0}, std::min(threads, sweep.groups()), [&](std::size_t) {
-        for (std::size_t group = next++; group < sweep.groups(); group = next++)
+        while (!is_asked_to_stop(stop)) {
+            const std::size_t group = next++;
+            if (group >= sweep.groups()) break;
             sweep.run(group, memory.passed.get(), memory.workers.local());
+        }
     });
+    heed(stop);
 }
 
 }  // namespace
@@ -81,6 +89,9 @@ std::string why_not_swept(const ClothModel& model) {
         if (why.empty() && !term.rows && !term.part_of_rows)
             why = fmt::format("{} has no version along rows", term.name);
     });
+    if (why.empty() && model.by_surfaces()) why = "surfaces meet, not particles alone";
+    if (why.empty() && std::ranges::any_of(model.pins, &PinnedGroup::slides))
+        why = "a pin slides along a line";
     for (const Solid& solid : model.solids) {
         if (why.empty() && solid.shape == Shape::mesh)
             why = fmt::format("the solid {} is a mesh", solid.name);
@@ -108,8 +119,8 @@ void ExplicitSweep::prepare(const ClothModel& model, const ForceMemory& forces, 
     }
 }
 
-void ExplicitSweep::run(const ClothModel& model, const ClothState& state, int substeps, ClothState& next,
-                        Constraints& constraints, std::uint32_t& touches) {
+void ExplicitSweep::run(const ClothModel& model, const ClothState& state, int substeps, StopFlag stop,
+                        ClothState& next, Constraints& constraints, std::uint32_t& touches) {
     SweepMemory& memory = *memory_;
     plan_substeps(model, state.t, memory.h, substeps, memory.substeps);
     if (memory.groups < memory.substeps.size()) {
@@ -126,10 +137,10 @@ void ExplicitSweep::run(const ClothModel& model, const ClothState& state, int su
         return threads > 1 && cloth.patch.count() >= least;
     };
     for (SweptCloth& cloth : memory.cloths) {
-        if (is_shared(cloth)) sweep_together(model, memory, cloth, threads);
+        if (is_shared(cloth)) sweep_together(model, memory, cloth, threads, stop);
     }
     tbb::parallel_for(std::size_t{0}, memory.cloths.size(), [&](std::size_t k) {
-        if (!is_shared(memory.cloths[k])) sweep_alone(model, memory, memory.cloths[k]);
+        if (!is_shared(memory.cloths[k])) sweep_alone(model, memory, memory.cloths[k], stop);
     });
     next.x.resize(model.size());
     next.v.resize(model.size());

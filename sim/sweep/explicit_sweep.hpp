@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "base/stop.hpp"
 #include "sim/constraints/contact.hpp"
 #include "sim/model/model.hpp"
 #include "sim/model/report.hpp"
@@ -42,8 +43,9 @@ public:
     /// Takes a state through `substeps` substeps of the prepared size. Pins, contact with solids and air act
     /// in each as they do in step(). What was constrained in the last substep stays in `constraints`, and
     /// `touches` counts its contacts.
+    /// Throws Stopped.
     ///   next  receives x, v and contacts; must not be `state`
-    void run(const ClothModel& model, const ClothState& state, int substeps, ClothState& next,
+    void run(const ClothModel& model, const ClothState& state, int substeps, StopFlag stop, ClothState& next,
              Constraints& constraints, std::uint32_t& touches);
 
 private:

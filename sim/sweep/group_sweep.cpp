@@ -49,6 +49,12 @@ void GroupSweep::move(std::size_t row, const SweepSubstep& substep, std::size_t 
     cloth_.repeat_over_seam(row);
 }
 
+Vec3 GroupSweep::place_of(const RowPin& pin, const SweepSubstep& substep) const {
+    const PinnedGroup& group = model_.pins[pin.group];
+    return is_rigid(group) ? substep.pins[pin.group] * pin.start
+                           : pin_place(group, substep.moments[pin.group], pin.k);
+}
+
 // Of several pins the first that holds decides.
 void GroupSweep::find_held(std::size_t row, const SweepSubstep& substep, SweepWorker& worker) const {
     const Row x = cloth_.x(row);
@@ -58,9 +64,8 @@ void GroupSweep::find_held(std::size_t row, const SweepSubstep& substep, SweepWo
         const bool known = std::any_of(worker.held.begin(), worker.held.end(),
                                        [&](const HeldParticle& h) { return h.column == pin.column; });
         if (known) continue;
-        worker.held.push_back({pin.column,
-                               {x[0][pin.column], x[1][pin.column], x[2][pin.column]},
-                               substep.pins[pin.group] * pin.start});
+        worker.held.push_back(
+            {pin.column, {x[0][pin.column], x[1][pin.column], x[2][pin.column]}, place_of(pin, substep)});
     }
 }
 

@@ -38,6 +38,7 @@ public:
 
 private:
     void move(std::size_t row, const SweepSubstep& substep, std::size_t level, SweepWorker& worker);
+    Vec3 place_of(const RowPin& pin, const SweepSubstep& substep) const;
     void find_held(std::size_t row, const SweepSubstep& substep, SweepWorker& worker) const;
     RowStretch stretch(std::size_t row, std::size_t k, const Row& f, SweepWorker& worker) const;
     void advance_stretch(const RowStretch& part, const double* inverse_mass, const SolidSubstep& solids,

@@ -53,7 +53,7 @@ void pose_substep(std::span<const Solid> solids, double t, double h, SolidSubste
     pose_solids(solids, t, h, out.poses);
     out.travel = 0;
     for (std::size_t s = 0; s < solids.size(); ++s) {
-        if (solids[s].motion.empty()) continue;
+        if (!solids[s].moves()) continue;
         const SolidReach& reach = out.poses.reach[s];
         const bool foreseen = reach.turn <= largest_turn && (reach.turn == 0 || std::isfinite(reach.radius));
         out.travel =

@@ -130,6 +130,7 @@ std::size_t RowForces::bytes() const {
             sum += t.stiffness.bytes() + t.damping.bytes();
         for (const GridTables::Bend& t : cloth.tables.bend)
             sum += t.arc.bytes() + t.slope.bytes() + t.crossing.bytes();
+        for (const RowTable& t : cloth.tables.curvature) sum += t.bytes();
         for (const RowTable& t : cloth.is_explicit) sum += t.bytes();
     }
     return sum;
@@ -207,6 +208,7 @@ void RowForces::gather(const ClothModel& model, std::span<const std::uint8_t> ta
                         [&](std::size_t k, const RowState& a, const RowState& b, std::size_t count,
                             const Row& fa, const Row& fb) {
                             const GridTables::Extension& table = cloth.tables.extension[k];
+                            if (!table.any) return;
                             const std::uint32_t at = springs[k]->at(0, static_cast<std::uint32_t>(row));
                             split_row(a, b, table.rest, table.stiffness.row(row), table.damping.row(row),
                                       cloth.is_explicit[k].row(row),

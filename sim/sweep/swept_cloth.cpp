@@ -2,6 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+
 #include "sim/constraints/pins.hpp"
 #include "sim/solids/motion.hpp"
 #include "sim/sweep/row_forces.hpp"
@@ -10,14 +12,15 @@ namespace unravel::sim {
 
 namespace {
 
-// From the start to where a pin has its particles at time t.
+// From the start to where a pin that moves as one body has its particles at time t.
 Pose pin_pose(const PinnedGroup& pin, double t) {
     Pose pose = Pose::Identity();
-    if (pin.motion.empty()) return pose;
-    const MotionSample sample = sample_motion(pin.motion, t);
-    pose.linear() = rotation_from_degrees(sample.degrees);
-    pose.translation() = pin.centre + sample.displacement - pose.linear() * pin.centre;
-    return pose;
+    if (!pin.motion.empty()) {
+        const MotionSample sample = sample_motion(pin.motion, t);
+        pose.linear() = rotation_from_degrees(sample.degrees);
+        pose.translation() = pin.centre + sample.displacement - pose.linear() * pin.centre;
+    }
+    return pin.carried.by ? carried_pose(pin.carried, t) * pose : pose;
 }
 
 }  // namespace
@@ -29,8 +32,8 @@ void place_pins(const ClothModel& model, SweptCloth& cloth) {
         for (std::size_t k = 0; k < group.particles.size(); ++k) {
             const std::uint32_t p = group.particles[k] - cloth.patch.first;
             if (group.particles[k] < cloth.patch.first || p >= cloth.patch.count()) continue;
-            cloth.pins[p / cloth.columns()].push_back(
-                {p % static_cast<std::uint32_t>(cloth.columns()), g, group.start[k]});
+            cloth.pins[p / cloth.columns()].push_back({p % static_cast<std::uint32_t>(cloth.columns()), g,
+                                                       static_cast<std::uint32_t>(k), group.start[k]});
         }
     }
 }
@@ -44,8 +47,11 @@ void plan_substeps(const ClothModel& model, double t, double h, int count, std::
         if (!model.solids.empty()) pose_substep(model.solids, begin, h, substep.solids);
         substep.pins.clear();
         substep.holds.clear();
+        substep.moments.clear();
+        const bool rigid = std::ranges::all_of(model.pins, is_rigid);
         for (const PinnedGroup& pin : model.pins) {
-            substep.pins.push_back(pin_pose(pin, begin + h));
+            substep.pins.push_back(is_rigid(pin) ? pin_pose(pin, begin + h) : Pose::Identity());
+            if (!rigid) substep.moments.push_back(pin_moment(pin, begin + h));
             substep.holds.push_back(holds(pin, begin + h));
         }
     }

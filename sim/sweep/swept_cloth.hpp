@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/constraints/pins.hpp"
 #include "sim/model/state.hpp"
 #include "sim/sweep/row_contact.hpp"
 #include "sim/terms/row_version.hpp"
@@ -14,6 +15,7 @@ namespace unravel::sim {
 /// A particle that a pin of the scene moves.
 struct RowPin {
     std::uint32_t column, group;
+    std::uint32_t k;  ///< which of the group's particles it is
     Vec3 start;
 };
 
@@ -21,8 +23,9 @@ struct RowPin {
 struct SweepSubstep {
     RowWind wind;
     SolidSubstep solids;
-    std::vector<Pose> pins;   ///< (pinned groups) from the start to the substep's end
-    std::vector<char> holds;  ///< (pinned groups) not released
+    std::vector<Pose> pins;          ///< (pinned groups) from the start to the substep's end
+    std::vector<PinMoment> moments;  ///< (pinned groups) of those that move not as one body; empty: all do
+    std::vector<char> holds;         ///< (pinned groups) not released
 };
 
 struct SweptCloth : GridRows {

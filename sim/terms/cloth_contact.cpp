@@ -50,11 +50,11 @@ void list_self_collision(const Scene& scene, std::vector<Effect>& effects) {
 
 const ForceTerm self_collision_term{
     .name = "self-collision",
-    .acts = [](const ClothModel& model) { return model.self_collision.has_value(); },
+    .acts = [](const ClothModel& model) { return model.self_collision && !model.cloth_by_surfaces(); },
     .evaluate = find_and_push_apart,
     .add = add_pairs,
     .couple = couple_pairs,
-    .may_be_implicit = [](const ForceSettings&) { return true; },
+    .may_be_implicit = [](const ClothModel&, const ForceSettings&) { return true; },
     .put_in = release_pairs,
     .count = count_pairs,
     .time = &StageTimes::collision,

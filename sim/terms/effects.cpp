@@ -23,6 +23,7 @@ void add_places(const List& list, std::string& text) {
 
 std::string place_text(const SourcePlace& place) {
     if (place.option > 0) return fmt::format(" (--set #{})", place.option);
+    if (place.file > 0) return fmt::format(" (line {} of included file {})", place.line, place.file);
     return place.line > 0 ? fmt::format(" (line {})", place.line) : std::string();
 }
 

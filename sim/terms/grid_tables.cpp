@@ -27,7 +27,9 @@ void build_tables(const ClothModel& model, const GridSprings& grid, const BendLi
     for (std::size_t f = 0; f < 4; ++f) {
         const SpringRows& rows = *extension[f];
         GridTables::Extension& out = tables.extension[f];
-        if (rows.count() > 0) out.rest = model.springs.rest[rows.first];
+        out.any = rows.count() > 0;
+        if (!out.any) continue;
+        out.rest = model.springs.rest[rows.first];
         tabulate(grid, rows, of(model.springs.stiffness), out.stiffness);
         tabulate(grid, rows, of(model.springs.damping), out.damping);
     }
@@ -38,11 +40,18 @@ void build_tables(const ClothModel& model, const GridSprings& grid, const BendLi
         out.any = rows.count() > 0;
         if (!out.any) continue;
         out.rest = model.bends.rest[rows.first];
+        tables.bend_families[f] = {static_cast<int>(rows.from[0]), static_cast<int>(rows.to[0]),
+                                   static_cast<int>(rows.to[1])};
         const double scale = 4.0 / (out.rest * out.rest);
         tabulate(
             grid, rows, [&](std::uint32_t s) { return scale * model.bends.stiffness[s]; }, out.arc);
         tabulate(grid, rows, of(limit.slope), out.slope);
         tabulate(grid, rows, of(limit.crossing), out.crossing);
+    }
+    const auto curvature = curvature_rows(grid);
+    for (std::size_t f = 0; f < curvature.size(); ++f) {
+        tables.curves = tables.curves || curvature[f]->count() > 0;
+        tabulate(grid, *curvature[f], of(model.curvature.stiffness), tables.curvature[f]);
     }
     // One more column: the cell over a tube's seam has corners on both of its sides.
     const std::size_t width = grid.nu;

@@ -31,6 +31,7 @@ void add_springs_of_row(const RowPass& pass, std::size_t row) {
                 [&](std::size_t k, const RowState& a, const RowState& b, std::size_t count, const Row& fa,
                     const Row& fb) {
                     const GridTables::Extension& t = pass.tables.extension[k];
+                    if (!t.any) return;
                     extension_row(a, b, t.rest, t.stiffness.row(row), t.damping.row(row), count, fa, fb);
                 });
 }
@@ -47,11 +48,12 @@ void measure_springs(const ClothModel& model, std::span<const Vec3> x, const For
         return extension_energy(length, springs.rest[s], springs.stiffness[s]);
     });
     if (ws.strain.empty()) return;
+    report.strained = static_cast<std::uint32_t>(std::ranges::max_element(ws.strain) - ws.strain.begin());
+    report.max_strain = ws.strain[report.strained];
     const auto p99 =
         ws.strain.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(ws.strain.size() - 1));
     std::nth_element(ws.strain.begin(), p99, ws.strain.end());
     report.p99_strain = *p99;
-    report.max_strain = *std::max_element(p99, ws.strain.end());
 }
 
 double gain_of_explicit(const ClothModel& model, const StepEnds& step, const ForceMemory&,
@@ -103,7 +105,7 @@ const ForceTerm spring_term{.name = "stretch and shear",
                             .evaluate = evaluate_springs,
                             .add = add_springs,
                             .couple = couple_springs,
-                            .may_be_implicit = [](const ForceSettings&) { return true; },
+                            .may_be_implicit = [](const ClothModel&, const ForceSettings&) { return true; },
                             .rows = &spring_rows,
                             .measure = measure_springs,
                             .explicit_gain = gain_of_explicit,

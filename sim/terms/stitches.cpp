@@ -28,7 +28,8 @@ void pull_stitches(const ClothModel& model, const ForcesAt& at, ForceMemory& mem
     if (own.springs.size() != all.size()) thread_stitches(model, own);
     std::vector<double>& rest = own.springs.rest.own();
     for (std::size_t s = 0; s < all.size(); ++s) {
-        const double left = all.closed[s] > 0 ? std::max(1.0 - at.t_end / all.closed[s], 0.0) : 0.0;
+        const double left =
+            all.closed[s] > 0 ? std::max(1.0 - (at.t_end - model.begin) / all.closed[s], 0.0) : 0.0;
         rest[s] = left * all.start[s];
     }
     extension_forces(own.springs, model.mass, at.x, at.v, at.settings.h, at.settings.splitting, 0.0,
@@ -72,7 +73,7 @@ const ForceTerm stitch_term{.name = "stitches",
                             .evaluate = pull_stitches,
                             .add = add_stitches,
                             .couple = couple_stitches,
-                            .may_be_implicit = [](const ForceSettings&) { return true; },
+                            .may_be_implicit = [](const ClothModel&, const ForceSettings&) { return true; },
                             .put_in = work_of_closing,
                             .time = &StageTimes::collision,
                             .effects = list_seams};

@@ -18,9 +18,8 @@ struct RowVersion;        // sim/terms/row_version.hpp
 struct ForceSettings {
     double h = 0;  ///< s, of the step
     Splitting splitting;
-    double band = 0;                ///< see extension_forces()
-    bool bend_is_implicit = false;  ///< bend springs get their Jacobian (sim/forces/bend.hpp)
-    bool all_explicit = false;      ///< nothing may be implicit, so that there is no linear system
+    double band = 0;            ///< see extension_forces()
+    bool all_explicit = false;  ///< nothing may be implicit, so that there is no linear system
     friend bool operator==(const ForceSettings&, const ForceSettings&) = default;
 };
 
@@ -83,7 +82,7 @@ struct ForceTerm {
     void (*couple)(const ClothModel& model, const ForcesAt& at, const ForceMemory& memory,
                    StepCouplings& out) = nullptr;
     /// Whether the settings may make some of its springs implicit; null: never.
-    bool (*may_be_implicit)(const ForceSettings& settings) = nullptr;
+    bool (*may_be_implicit)(const ClothModel& model, const ForceSettings& settings) = nullptr;
 
     /// The same force along the rows of grids, which pushes or splits springs; null: a cloth on which it acts
     /// takes the general path.

@@ -16,7 +16,7 @@ void conservative_forces(const ClothModel& model, std::span<const Vec3> x, Force
     const std::vector<Vec3> at_rest(x.size(), Vec3::Zero());
     constexpr double all = std::numeric_limits<double>::infinity();
     ForcesAt at;
-    at.settings.splitting = {all, all};
+    at.settings.splitting = {all, all, all};
     at.x = x;
     at.v = at_rest;
     std::ranges::fill(force, Vec3(Vec3::Zero()));

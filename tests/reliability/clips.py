@@ -27,10 +27,14 @@ def size(png):
     return struct.unpack(">II", png.read_bytes()[16:24])
 
 
-def wait_for(process, pattern, folder, count):
+def wait_until(process, holds):
     deadline = time.monotonic() + PATIENCE
-    while process.poll() is None and time.monotonic() < deadline and len(list(folder.glob(pattern))) < count:
+    while process.poll() is None and time.monotonic() < deadline and not holds():
         time.sleep(0.002)
+
+
+def wait_for(process, pattern, folder, count):
+    wait_until(process, lambda: len(list(folder.glob(pattern))) >= count)
 
 
 def test_parts_and_other_looks_go_to_folders_of_their_own(reference, folder):
@@ -61,7 +65,9 @@ def test_a_clip_drawn_anew_replaces_the_old_one_only_when_it_is_whole(reference,
         out = folder / signal.Signals(number).name
         shutil.copytree(reference.folder, out)
         process = start(job(out, "--resume", *LOOK))
-        wait_for(process, "next/frames/*_[0-9]*.png", out, 5)
+        # Well under way: pictures of the new look are there, or of the old one are not any more.
+        wait_until(process, lambda: len(list(out.glob("next/frames/*_[0-9]*.png"))) >= 5 or
+                   not all((out / name).exists() for name in old))
         process.send_signal(number)
         text, _ = process.communicate(timeout=PATIENCE)
         if process.returncode != DONE:

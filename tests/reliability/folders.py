@@ -1,10 +1,14 @@
 """Folders that are gone on with: complete, damaged, of another scene or look, shorter."""
 
+import json
 import shutil
+import signal
 import struct
+import subprocess
 
 from run_files import check_same, content, video_frames
-from tool_runs import FRAMES, OUTPUT, SCENE, USAGE, finish, job, run, start
+from tool_runs import (DONE, FRAMES, OUTPUT, PATIENCE, SCENE, SCENE_ERROR, USAGE, finish, job, run, start, stopped_by,
+                       wait_for_frames)
 
 
 def test_a_changed_scene_is_refused_with_what_changed(reference, folder):
@@ -17,6 +21,77 @@ def test_a_changed_scene_is_refused_with_what_changed(reference, folder):
     text = run(job(out), USAGE)
     assert "--resume" in text and "--force" in text, text
     reference.check(out, "refused runs")
+
+
+def test_what_is_not_complete_is_gone_on_with_or_makes_room_unasked(reference, folder):
+    out = folder / "out"
+    process = start(job(out))
+    wait_for_frames(process, out, 4)
+    process.kill()
+    process.communicate()
+    begun = (out / "cache/frame_0001.state").stat().st_mtime_ns
+    run(job(out))  # the same scene: from where it stopped
+    assert (out / "cache/frame_0001.state").stat().st_mtime_ns == begun
+    reference.check(out, "gone on with unasked")
+    run(job(out), USAGE)  # complete: not touched
+    reference.check(out, "a complete run asked for again")
+    other = folder / "other"
+    process = start(job(other))
+    wait_for_frames(process, other, 4)
+    process.kill()
+    process.communicate()
+    begun = (other / "cache/frame_0001.state").stat().st_mtime_ns
+    run(job(other, "--set", "cloth.density=0.3"))  # another scene: anew
+    assert (other / "cache/frame_0001.state").stat().st_mtime_ns != begun
+    draft = folder / "draft"
+    for density in ("0.2", "0.3"):
+        run(job(draft, "--draft", "--set", f"cloth.density={density}"))
+
+
+def test_a_scene_from_standard_input_a_still_and_a_preview(reference, folder):
+    text = SCENE.read_bytes()
+    piped = start(["run", "-", "-o", folder / "piped", "--device", "software", "--threads", "2"],
+                  stdin=subprocess.PIPE)
+    out, err = piped.communicate(text, timeout=PATIENCE)
+    assert piped.returncode == DONE, (out + err).decode()
+    for name in ("cache/frame_0014.state", "frames/textured_0014.png"):
+        assert (folder / "piped" / name).read_bytes() == (reference.folder / name).read_bytes(), name
+    broken = start(["check", "-"], stdin=subprocess.PIPE)
+    out, err = broken.communicate(b"[cloth]\nsiz = 3\n", timeout=PATIENCE)
+    assert broken.returncode == SCENE_ERROR and b"stdin:2:1: error: unknown key 'siz'" in err, err
+    run(job(folder / "still", "--still", "5", "--style", "textured"))
+    assert [p.name for p in (folder / "still/frames").glob("*.png")] == ["textured_0005.png"]
+    assert (folder / "still/frames/textured_0005.png").read_bytes() == \
+        (reference.folder / "frames/textured_0005.png").read_bytes()
+    assert not (folder / "still/textured.mp4").exists()
+    assert not (folder / "still/cache/frame_0006.state").exists()
+    run(job(folder / "still", "--still", "6", "--set", "cloth.density=0.3"))  # another one, as often as you like
+
+    # A page of runs: each scene's clip, numbers and text, and what is missing is named.
+    page = folder / "gallery.html"
+    assert "unravel run" in run(["gallery", SCENE, "--runs", folder, "-o", page], USAGE)
+    shutil.copytree(reference.folder, folder / "tiny")
+    run(["gallery", SCENE, "--runs", folder, "-o", page])
+    shown = page.read_text()
+    assert shown.count("data:video/mp4;base64,") == 2 and "Small and quick, but with everything" in shown
+    assert "corner = &quot;u0v0&quot;" in shown
+
+    picture = folder / "preview.png"
+    told = json.loads(run(["preview", SCENE, "-o", picture, "--device", "software", "--json", "--pictures", "4"]))
+    assert told["frames"] == [0, 5, 9, 14] and told["particles"] == 121 and picture.stat().st_size > 1000, told
+    scene = folder / "watched.toml"
+    scene.write_bytes(text)
+    watching = start(["preview", scene, "-o", picture, "--device", "software", "--watch", "--json", "--still", "3"])
+    first = json.loads(watching.stdout.readline())
+    before = picture.read_bytes()
+    scene.write_bytes(text.replace(b"radius = 0.15", b"radius = [1]"))  # a slip: told, and watched on
+    assert b"watched.toml:18:10: error" in watching.stderr.readline()
+    scene.write_bytes(text.replace(b"radius = 0.15", b"radius = 0.1"))
+    second = json.loads(watching.stdout.readline())
+    assert first["frames"] == second["frames"] == [3]
+    assert picture.read_bytes() != before
+    watching.terminate()
+    finish(watching, stopped_by(signal.SIGTERM))
 
 
 def test_a_complete_run_resumed_stays_as_it_is(reference, folder):

@@ -1,10 +1,11 @@
 """Memory over many frames."""
 
+import json
 import os
 import subprocess
 import time
 
-from tool_runs import DONE, job, start, wait_for_frames
+from tool_runs import DONE, job, run, start, wait_for_frames
 
 
 def resident(process):
@@ -43,3 +44,25 @@ def test_memory_stays_flat(reference, folder):
     assert grown < 0.5 + 0.001 * frames, f"{grown:.1f} MiB grown in the second half"
     # stats.csv and the page hold every frame, but are never held whole themselves.
     assert most - held[-1] < 4 + 0.004 * frames, f"{most - held[-1]:.1f} MiB for the page"
+
+
+def test_check_foretells_memory(reference, folder):
+    if os.environ.get("UNRAVEL_FRAMES") == "0":
+        print("    not with a sanitizer, which takes memory of its own", flush=True)
+        return
+    cloth = "[cloth]\nparticles = [240, 240]\nmaterial = { %s }\n[[cloth.pin]]\nedge = \"v0\"\n"
+    clip = "[clip]\nduration = 0.05\nfps = 40\nsize = [640, 480]\n"
+    for name, material, more in (("soft", "stretch = 50", ""), ("cotton", 'preset = "cotton"', ""),
+                                 ("met", 'preset = "cotton"', '[[solid]]\nshape = "sphere"\ncenter = [0, -0.31, 0]\n')):
+        scene = folder / f"{name}.toml"
+        scene.write_text(clip + cloth % material + more)
+        foretold = json.loads(run(["check", scene, "--json"]))
+        for command, key in (("simulate", "estimated_bytes"), ("run", "estimated_bytes_with_pictures")):
+            process = start(job(folder / f"{name}_{command}", "--quiet", command=command, scene=scene),
+                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            _, status, used = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            assert process.returncode == DONE
+            share = foretold[key] / (1024 * used.ru_maxrss)
+            print(f"    {name}, {command}: {used.ru_maxrss / 1024:.0f} MiB, foretold {share:.2f} of it", flush=True)
+            assert 1 / 1.5 < share < 1.5, share

@@ -31,6 +31,19 @@ def test_signals_finish_the_videos_and_resume_ends_with_the_same_bytes(reference
         assert made["status"] == "complete" and made["state_hashes"] == whole["state_hashes"]
 
 
+def test_a_signal_is_heard_within_a_long_step(reference, folder):
+    out = folder / "long_step"
+    process = start(job(out, "--set", "solver.integrator=explicit", "--set", "solver.step=1/25",
+                        "--set", "solver.substeps=1000000", command="simulate"))
+    wait_for_frames(process, out, 1)
+    time.sleep(0.3)
+    process.send_signal(signal.SIGTERM)
+    finish(process, stopped_by(signal.SIGTERM))
+    states = [file.name for file in out.glob("cache/*.state")]
+    assert states == ["frame_0000.state"], states  # it did not wait for the step's end
+    assert json.loads((out / "run.json").read_text())["status"] == "interrupted"
+
+
 def test_an_early_signal_leaves_a_folder_that_resumes(reference, folder):
     out = folder / "early"
     process = start(job(out, command="simulate"))

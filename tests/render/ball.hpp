@@ -14,4 +14,14 @@ inline render::SolidMesh ball(float radius, render::Rgb color = render::SolidMes
     return mesh;
 }
 
+/// A box with these edges [m].
+inline render::SolidMesh box(const sim::Vec3& size, render::Rgb color) {
+    sim::Solid solid;
+    solid.shape = sim::Shape::box;
+    solid.size = size;
+    render::SolidMesh mesh = tool::drawn_solid(solid);
+    mesh.color = color;
+    return mesh;
+}
+
 }  // namespace unravel::testing

@@ -306,3 +306,27 @@ TEST_CASE("a_gif_frame_depends_on_its_picture_alone") {
     CHECK(alone == quantized({numbered_image(3), plain_image({200, 10, 30}), noise}));
     CHECK(alone != quantized({noise, numbered_image(3)}));
 }
+
+TEST_CASE("full_chroma_keeps_the_colour_of_lines_one_pixel_wide") {
+    const TemporaryFolder folder;
+    // Lines of red and blue side by side: at half the size both would be purple.
+    Image image = plain_image({20, 20, 20});
+    for (int x = 0; x < width; x += 2) {
+        fill(image, x, 0, 1, height, {220, 30, 30});
+        fill(image, x + 1, 0, 1, height, {40, 60, 220});
+    }
+    for (const char* ending : {".mp4", ".webm"}) {
+        VideoSettings settings = small_settings();
+        settings.thin_lines = settings.full_chroma = true;
+        const fs::path file = folder.path() / (std::string("lines") + ending);
+        VideoWriter writer(file, settings);
+        for (int k = 0; k < 3; ++k) writer.add(image);
+        writer.finish();
+        CHECK(writer.description().find("yuv444p") != std::string::npos);
+        Image back;
+        CHECK(read_video(file, [&](const Image& frame, double) { back = frame; }).pixel_format == "yuv444p");
+        CHECK(std::abs(back.at(64, 48)[0] - 220) < 24);
+        CHECK(std::abs(back.at(65, 48)[2] - 220) < 24);
+        CHECK(back.at(65, 48)[0] < 80);
+    }
+}

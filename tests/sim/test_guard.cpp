@@ -244,3 +244,25 @@ TEST_CASE("a run in which a solid lifts a cloth that rests in it is stopped with
     }
     CHECK(words.find("it is lifted") != std::string::npos);
 }
+
+TEST_CASE("where damping is too hard for the solver's tolerance the advice says so, and helps") {
+    const auto run = [](const std::string& tolerance) {
+        Simulation s = start_simulation(
+            parse_scene("[clip]\nduration = 0.2\n[cloth]\nparticles = [21, 21]\nsize = [0.1, 0.1]\n"
+                        "material = { stretch_damping = 1e4 }\n[[cloth.pin]]\ncorner = [\"u0v0\", \"u1v0\"]\n"
+                        "[solver]\ntolerance = " +
+                            tolerance + "\n",
+                        "damped.toml"));
+        for (int k = 0; k < 6; ++k) next_record(s);
+    };
+    std::string advised;
+    try {
+        run("1e-3");
+    } catch (const SimulationError& error) {
+        const std::string says = "lower solver.tolerance to ", advice = error.failure().advice;
+        REQUIRE(advice.find(says) == 0);
+        advised = advice.substr(says.size(), advice.find(' ', says.size()) - says.size());
+    }
+    REQUIRE(!advised.empty());
+    CHECK_NOTHROW(run(advised));
+}

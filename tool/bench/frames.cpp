@@ -73,14 +73,14 @@ FrameStage measure_simulation(Work& work) {
     return watch.read("simulate", work.frames);
 }
 
-FrameStage measure_drawings(Work& work, const ClothModel& model) {
+FrameStage measure_drawings(Work& work, const ClothModel& model, const DrawScene& drawn) {
     const auto edges = drawn_edges(model);
     ComponentColors colors;
     work.drawings.resize(work.records.size());
     const Stopwatch watch;
     for (std::size_t k = 0; k < work.records.size(); ++k)
-        make_draw_frame(work.scene, model, work.records[k], colors.assign(work.records[k].component, edges),
-                        work.drawings[k]);
+        make_draw_frame(work.scene, model, drawn, work.records[k],
+                        colors.assign(work.records[k].component, edges), work.drawings[k]);
     return watch.read("colours and shapes", work.frames);
 }
 
@@ -108,7 +108,8 @@ FrameStage measure_video(const Work& work, const RunFolder& folder, std::string&
     VideoSettings settings;
     settings.width = work.scene.clip.size[0];
     settings.height = work.scene.clip.size[1];
-    settings.fps_num = work.scene.clip.fps;
+    settings.fps_num = work.scene.clip.fps.num;
+    settings.fps_den = work.scene.clip.fps.den;
     const Stopwatch watch;
     tbb::parallel_for(std::size_t{0}, std::size_t{2}, [&](std::size_t s) {
         VideoWriter video(folder.video(s == 0 ? "textured" : "components", ".mp4"), settings);
@@ -166,9 +167,9 @@ FrameBench bench_frames(const Scene& scene, int frames, int threads, const Devic
     Placement placement;
     const ClothModel model = build_model(scene, placement);
     bench.stages.push_back(measure_simulation(work));
-    bench.stages.push_back(measure_drawings(work, model));
+    const DrawScene drawn = make_draw_scene(scene, model, placement);
+    bench.stages.push_back(measure_drawings(work, model, drawn));
     {
-        const DrawScene drawn = make_draw_scene(scene, model, placement);
         const GlContext context(device);
         Renderer renderer(context, drawn, {scene.clip.size[0], scene.clip.size[1], ClipOptions{}.samples, 1});
         bench.renderer = renderer.description();

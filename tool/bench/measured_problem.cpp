@@ -39,7 +39,7 @@ MeasuredProblem::MeasuredProblem(const Scene& scene, double start, int threads)
     arena.execute([&] {
         while (simulation_.state.t < start) report_ = next_step(simulation_);
     });
-    h_ = 1.0 / (simulation_.fps * simulation_.steps_per_frame);
+    h_ = 1.0 / (simulation_.fps.per_second() * simulation_.steps_per_frame);
     if (simulation_.options.integrator == Integrator::automatic ||
         simulation_.options.integrator == Integrator::explicit_)
         simulation_.options.integrator = Integrator::adaptive_imex;

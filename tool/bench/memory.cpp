@@ -98,10 +98,12 @@ MemoryRecord account_memory(const Simulation& simulation, double peak) {
     };
     add("stretch and shear springs", bytes(m.springs));
     add("bend springs", bytes(m.bends.i, m.bends.j) + bytes(m.bends.rest, m.bends.stiffness, m.bends.slope));
+    add("curvature stencils", static_cast<double>(m.curvature.bytes()));
     const ForceMemory& f = w.forces.memory;
     const LinearStage& l = w.linear;
     add("whose springs: adjacency",
-        static_cast<double>(m.spring_adjacency.bytes() + f.bending.adjacency.bytes()));
+        static_cast<double>(m.spring_adjacency.bytes() + f.bending.adjacency.bytes() +
+                            f.bending.parts.bytes()));
     add("air's cells", bytes(f.air.cells.corners, f.air.cells.start, f.air.cells.cells));
     add("mass", bytes(m.mass));
     add("state, and the one before", bytes(simulation.state) + bytes(w.before));
@@ -111,7 +113,9 @@ MemoryRecord account_memory(const Simulation& simulation, double peak) {
     add("forces of stretch and shear", bytes(f.springs));
     add("forces of bending and its limit",
         bytes(f.bending.force) + bytes(f.bending.limit.slope, f.bending.limit.crossing) +
-            bytes(f.bending.implicit.springs) + bytes(f.bending.implicit.forces));
+            bytes(f.bending.implicit.springs) + bytes(f.bending.implicit.forces) +
+            bytes(f.bending.split.is_implicit, f.bending.split.implicit, f.bending.pull) +
+            bytes(f.bending.unlimited.slope, f.bending.unlimited.crossing));
     add("forces of air", bytes(f.air.force));
     add("forces, drift, impulse and other vectors",
         bytes(w.forces.pushes, w.forces.sum, w.forces.taut, w.forces.ahead, w.contact.corrected,

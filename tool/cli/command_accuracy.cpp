@@ -5,6 +5,8 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -32,6 +34,7 @@ struct AccuracyOptions {
     double budget = 10;   // minutes
     double error = 1e-3;  // to be borne, of the cloth's diagonal
     double stiffer = 0;   // also a cloth so many times stiffer; 0: not
+    std::string window;   // A-B, s; empty: chosen
     std::string video = "mp4";
     std::string device = "auto";
     int threads = 0;
@@ -57,8 +60,9 @@ void draw(const AccuracyStudy& study, CostAxis axis, const std::filesystem::path
 }
 
 std::string caption_of(const AccuracyPoint& point, const AccuracyStudy& study) {
-    return fmt::format("{}, steps of 1/{} s: {:.2g} s per second", point.setting.method(),
-                       point.setting.steps_per_frame * study.scene.clip.fps, point.median() / study.window());
+    return fmt::format("{}, steps of {} s: {:.2g} s per second", point.setting.method(),
+                       step_text(study.scene.clip.fps, point.setting.steps_per_frame),
+                       point.median() / study.window());
 }
 
 // The cheapest setting within the error beside the most accurate one, as far into the clip as the budget
@@ -80,8 +84,11 @@ std::string make_video(const AccuracyStudy& study, const AccuracyOptions& option
         std::clamp(static_cast<int>(video_share * budget / std::max(per_frame, 1e-6)), study.reference.frames,
                    std::max(study.scene.clip.frames() - 1, study.reference.frames));
     const auto side = [&](const AccuracyPoint& point) {
-        return AccuracySide{run_setting(study.scene, point.setting, frames, keep_on).trajectory,
-                            caption_of(point, study)};
+        const AccuracyReference& reference = study.reference;
+        const double t0 = study.scene.clip.fps.time_of(reference.first_frame);
+        return AccuracySide{
+            run_setting(study.scene, point.setting, frames, keep_on, reference.start, t0).trajectory,
+            caption_of(point, study)};
     };
     try {
         write_accuracy_video(study.scene, side(*cheap), side(*accurate), parse_device_choice(options.device),
@@ -128,6 +135,25 @@ void print_files(const std::vector<std::filesystem::path>& files) {
     for (const std::filesystem::path& file : files) fmt::print("  {}\n", file.string());
 }
 
+// "0.5-1.2", seconds of the clip, as its frames.
+AccuracyWindow window_of(const std::string& text, const Scene& scene) {
+    if (text.empty()) return {};
+    double from = 0, to = 0;
+    const std::size_t dash = text.find('-');
+    const auto number = [&](std::size_t begin, std::size_t end, double& out) {
+        const auto [rest, error] = std::from_chars(text.data() + begin, text.data() + end, out);
+        return error == std::errc() && rest == text.data() + end;
+    };
+    const bool pair = dash != text.npos && number(0, dash, from) && number(dash + 1, text.size(), to);
+    AccuracyWindow window{static_cast<int>(std::lround(from * scene.clip.fps.per_second())), {}};
+    const int last = static_cast<int>(std::lround(to * scene.clip.fps.per_second()));
+    if (!pair || from < 0 || last <= window.first || last >= scene.clip.frames())
+        throw UsageError(fmt::format("--window {}: write it as A-B in seconds within 0-{:g}", text,
+                                     scene.clip.fps.time_of(scene.clip.frames() - 1)));
+    window.last = last;
+    return window;
+}
+
 int accuracy(const AccuracyOptions& options) {
     const InterruptWatch watch;
     const int threads = thread_count(options.threads);
@@ -141,6 +167,8 @@ int accuracy(const AccuracyOptions& options) {
     const double whole = 60 * options.budget,
                  each = whole * (film ? 1 - video_share : 1) / (contrast ? 2 : 1);
     AccuracyBudget budget{each, options.force, options.output.quiet};
+    budget.error = options.error;
+    budget.window = window_of(options.window, scene);
     budget.after = (film ? video_share * whole : 0) + (contrast ? each : 0);
 
     const PieceOptions& pieces = options.pieces;
@@ -230,6 +258,9 @@ void add_accuracy(CommandLine& line) {
         .add_option("--stiffer", o.stiffer,
                     "the same study of a cloth so many times stiffer, and both side by side")
         ->check(CLI::Range(1.0, 1e6));
+    command.add_option(
+        "--window", o.window,
+        "A-B: seconds of the clip that are compared (default: from its start, until references part)");
     command.add_option("--video", o.video, "mp4 of a cheap run beside an accurate one, or none")
         ->check(CLI::IsMember({"mp4", "none"}))
         ->capture_default_str();

@@ -3,20 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "sim/mesh/mesh_facts.hpp"
+#include "sim/model/contact_model.hpp"
+#include "sim/run/passages.hpp"
 #include "sim/run/simulate.hpp"
 #include "sim/scene_file/load.hpp"
+#include "sim/solids/shape.hpp"
 #include "sim/step/explicit_limit.hpp"
 #include "sim/step/plan_text.hpp"
 #include "sim/terms/effects.hpp"
 #include "tool/base/exit.hpp"
+#include "tool/base/machine.hpp"
 #include "tool/base/progress.hpp"
 #include "tool/cli/commands.hpp"
 #include "tool/cli/common_options.hpp"
+#include "tool/cli/forecast.hpp"
 #include "tool/picture/view.hpp"
 
 namespace unravel::tool {
@@ -28,47 +32,6 @@ struct CheckOptions {
     std::vector<std::string> overrides;
     OutputOptions output;
 };
-
-// Rough cost on one 2.4 GHz server core, fitted to the scenes that ship: within a factor of two of each.
-// Seconds per particle and step:
-constexpr double grid_step = 0.6e-6, mesh_step = 2.6e-6;  // springs and solve
-constexpr double contact_step = 0.5e-6;                   // with solids of a closed form
-constexpr double mesh_contact_step = 3.5e-6;              // with meshes
-constexpr double self_collision_step = 0.8e-6;
-// Seconds per frame of 1280 × 720, both views with PNG and video:
-constexpr double frame_pictures = 0.11;
-// Memory at its peak, measured within a factor of 1.5: of the simulation, and what pictures of 1280 × 720 add
-// to it.
-constexpr double own_bytes = 45e6, grid_bytes = 1150, mesh_bytes = 5000;
-constexpr double picture_bytes = 230e6, grid_picture_bytes = 2050, mesh_picture_bytes = 2900;
-
-// Of the simulation, and with pictures.
-std::array<double, 2> estimated_bytes(const ClothModel& model) {
-    double simulation = own_bytes, pictures = picture_bytes;
-    for (const ClothPatch& cloth : model.cloths) {
-        simulation += cloth.count() * (cloth.grid() ? grid_bytes : mesh_bytes);
-        pictures += cloth.count() * (cloth.grid() ? grid_picture_bytes : mesh_picture_bytes);
-    }
-    return {simulation, simulation + pictures};
-}
-
-double step_seconds(const Scene& scene, const ClothModel& model) {
-    double seconds = 0;
-    double contact = scene.self_collision ? self_collision_step : 0;
-    if (!scene.solids.empty()) {
-        const bool mesh = std::any_of(scene.solids.begin(), scene.solids.end(),
-                                      [](const Solid& solid) { return solid.shape == Shape::mesh; });
-        contact += mesh ? mesh_contact_step : contact_step;
-    }
-    for (const ClothPatch& cloth : model.cloths)
-        seconds += cloth.count() * (contact + (cloth.grid() ? grid_step : mesh_step));
-    return seconds;
-}
-
-double picture_seconds(const Scene& scene) {
-    const double area = static_cast<double>(scene.clip.size[0]) * scene.clip.size[1];
-    return scene.clip.frames() * frame_pictures * area / (1280.0 * 720.0);
-}
 
 // Calls visit(kind, name, file, facts) for every mesh of the scene.
 template <class Visit>
@@ -102,33 +65,89 @@ double round_down(double step) {
     return std::floor(step / unit) * unit;
 }
 
+// The longest stretch spring at rest [m].
+double widest_spacing(const ClothModel& model) {
+    double widest = 0;
+    for (std::uint32_t s = 0; s < model.springs.stretch_count; ++s)
+        widest = std::max(widest, model.springs.rest[s]);
+    return widest;
+}
+
+// At which distance layers touch, and what passes through what at the start.
+std::vector<std::string> contact_notes(const Scene& scene, const Simulation& simulation) {
+    std::vector<std::string> notes;
+    const ClothModel& model = simulation.model;
+    if (!model.contact) return notes;
+    const ContactModel& contact = *model.contact;
+    for (std::size_t c = 0; c < contact.thickness.size(); ++c) {
+        const std::string name = scene.cloths[c].name.empty()
+                                     ? fmt::format("cloth {}", c)
+                                     : fmt::format("cloth \"{}\"", scene.cloths[c].name);
+        if (contact.thickness[c] < contact.wanted[c])
+            notes.push_back(fmt::format(
+                "layers of {} touch at {:.2g} mm instead of {:.2g} mm: the start leaves them no more", name,
+                1e3 * contact.thickness[c], 1e3 * contact.wanted[c]));
+    }
+    const Passages passages = find_passages(model, 0, simulation.state.x);
+    if (!passages.cloth.empty()) {
+        const Vec3 at = place_of(contact.surface, simulation.state.x, passages.cloth.front());
+        notes.push_back(
+            fmt::format("at the start {} edges of cloth pass through cloth, the first near "
+                        "[{:.3f}, {:.3f}, {:.3f}]; they are not taken apart",
+                        passages.cloth.size(), at.x(), at.y(), at.z()));
+    }
+    if (passages.solids.value_or(0) > 0) {
+        const Vec3& at = simulation.state.x[passages.deepest_particle];
+        notes.push_back(
+            fmt::format("at the start {} edges of cloth pass through solids, up to {:.2g} mm deep near "
+                        "[{:.3f}, {:.3f}, {:.3f}]",
+                        *passages.solids, 1e3 * passages.deepest, at.x(), at.y(), at.z()));
+    }
+    for (std::size_t s = 0; s < model.solids.size(); ++s) {
+        const Solid& solid = model.solids[s];
+        const double thickness = 2 * law_of(solid.shape).half_extents(solid).minCoeff(),
+                     spacing = widest_spacing(model);
+        if (!law_of(solid.shape).surface || solid.contact == ContactMethod::surface || thickness >= spacing)
+            continue;
+        notes.push_back(fmt::format(
+            "{} is {:.2g} mm thick and particles are up to {:.2g} mm apart: they may miss it; contact = "
+            "\"surface\" holds edges and faces off, too",
+            solid.name.empty() ? fmt::format("solid {}", s) : fmt::format("solid \"{}\"", solid.name),
+            1e3 * thickness, 1e3 * spacing));
+    }
+    return notes;
+}
+
 int check(const CheckOptions& options) {
     const Scene scene = load_scene(options.scene, options.overrides);
     check_textures(scene, scene.home);
     Simulation simulation = start_simulation(scene);
     require_explicit_stability(simulation.model, simulation.options, scene.solver.step);
     const std::vector<Effect> effects = list_effects(scene);
-    const std::array<double, 2> memory = estimated_bytes(simulation.model);
-    const long steps = static_cast<long>(simulation.steps_per_frame) * (scene.clip.frames() - 1);
-    const double seconds = static_cast<double>(steps) * step_seconds(scene, simulation.model);
-    const double pictures = picture_seconds(scene);
+    const Forecast expected = forecast(scene, simulation);
+    const MemoryRoom room = memory_room();
     BendLimit limit;
     limit_bend(simulation.model.bends, simulation.model.mass, scene.solver.step, limit);
 
+    std::vector<std::string> notes = scene.notes;
+    notes.insert(notes.end(), simulation.model.notes.begin(), simulation.model.notes.end());
+    for (std::string& note : contact_notes(scene, simulation)) notes.push_back(std::move(note));
     const StepPlan& plan = plan_step(simulation.model, simulation.options, scene.solver.step, simulation.ws);
 
     if (options.output.json) {
         nlohmann::ordered_json json{{"scene", scene.name},
                                     {"particles", simulation.model.size()},
                                     {"frames", scene.clip.frames()},
-                                    {"steps", steps},
-                                    {"estimated_bytes", memory[0]},
-                                    {"estimated_bytes_with_pictures", memory[1]},
-                                    {"estimated_seconds", seconds},
-                                    {"estimated_picture_seconds", pictures},
+                                    {"steps", expected.steps},
+                                    {"settling_steps", simulation.settling},
+                                    {"estimated_bytes", expected.bytes},
+                                    {"estimated_bytes_with_pictures", expected.bytes_with_pictures},
+                                    {"memory_room", room.bytes},
+                                    {"estimated_seconds", expected.seconds},
+                                    {"estimated_picture_seconds", expected.picture_seconds},
                                     {"bend_springs_limited", limit.limited}};
         json["meshes"] = meshes_json(scene);
-        json["notes"] = scene.notes;
+        json["notes"] = notes;
         for (const Effect& e : effects) json["effects"][e.name] = {{"on", e.on}, {"because", e.because}};
         json["plan"] = plan_json(plan);
         fmt::print("{}\n", json.dump(2));
@@ -143,16 +162,22 @@ int check(const CheckOptions& options) {
                             const MeshFacts& facts) {
         fmt::print("  {} \"{}\": {}, {}\n", kind, name, file, facts_text(facts));
     });
-    fmt::print("  {} frames at {} per second, {} steps of {} s\n", scene.clip.frames(), scene.clip.fps, steps,
-               scene.solver.step);
+    fmt::print("  {} frames at {} per second, {} steps of {} s{}\n", scene.clip.frames(),
+               rate_text(scene.clip.fps), expected.steps, scene.solver.step,
+               simulation.settling > 0 ? fmt::format(", {} of them before frame 0", simulation.settling)
+                                       : std::string());
     fmt::print(
-        "  about {:.0f} MB of memory, {:.0f} with pictures; on one core {} of simulation and {} of "
+        "  about {:.0f} MB of memory, {:.0f} with pictures; on one core {}{} of simulation and {} of "
         "pictures\n",
-        memory[0] / 1e6, memory[1] / 1e6, duration_text(seconds), duration_text(pictures));
+        expected.bytes / 1e6, expected.bytes_with_pictures / 1e6, expected.longer ? "more than " : "",
+        duration_text(expected.seconds), duration_text(expected.picture_seconds));
+    if (expected.bytes_with_pictures > room.bytes)
+        fmt::print("  note: {}: too little for {}\n", room.told(),
+                   expected.bytes > room.bytes ? "the simulation" : "it with pictures");
     for (const auto& [name, words] : plan_words(plan)) fmt::print("  {:<19} {}\n", name, words);
     for (const Effect& e : effects)
         fmt::print("  {:<15} {} because {}\n", e.name, e.on ? "on, " : "off,", e.because);
-    for (const std::string& note : scene.notes) fmt::print("  note: {}\n", note);
+    for (const std::string& note : notes) fmt::print("  note: {}\n", note);
     if (limit.limited > 0) {
         fmt::print(
             "  note: {} of {} bend springs resist the onset of buckling less than the material would, so "

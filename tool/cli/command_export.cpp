@@ -13,6 +13,7 @@
 #include "tool/cli/picture_options.hpp"
 #include "tool/export/formats.hpp"
 #include "tool/folder/cached_run.hpp"
+#include "tool/run/run_json.hpp"
 
 namespace unravel::tool {
 
@@ -63,7 +64,7 @@ int export_run(const ExportOptions& options) {
     progress.finish();
     if (options.output.json) {
         nlohmann::ordered_json json{{"format", options.format},     {"units", "metres"},
-                                    {"axes", "right-handed, y up"}, {"fps", source.fps},
+                                    {"axes", "right-handed, y up"}, {"fps", rate_json(source.fps)},
                                     {"first", source.first},        {"last", source.last}};
         for (const auto& file : written) json["files"].push_back(file.string());
         fmt::print("{}\n", json.dump(2));
@@ -71,7 +72,7 @@ int export_run(const ExportOptions& options) {
         fmt::print("  {}{}\n  metres, right-handed, y up; frames {}-{} at {} per second\n",
                    written.front().string(),
                    written.size() > 1 ? fmt::format(" … {}", written.back().filename().string()) : "",
-                   source.first, source.last, source.fps);
+                   source.first, source.last, rate_text(source.fps));
     }
     return InterruptWatch::requested() ? InterruptWatch::exit_code() : exit_done;
 }

@@ -19,6 +19,8 @@
 #include "tool/folder/folder_lock.hpp"
 #include "tool/picture/clip.hpp"
 #include "tool/picture/turntable.hpp"
+#include "tool/picture/vector_still.hpp"
+#include "tool/picture/wire_colors.hpp"
 #include "tool/report/page.hpp"
 
 namespace unravel::tool {
@@ -154,6 +156,22 @@ int draw_clip(const RenderOptions& options, const CachedRun& run, const Scene& s
     return exit_done;
 }
 
+// A scale whose end the scene does not say ends where the whole clip's values do, but for the highest 1%.
+void set_scale(const CachedRun& run, int frames, Look& look) {
+    if (look.show_max > 0 || (look.show != Show::strain && look.show != Show::velocity)) return;
+    ScaleFinder finder;
+    for (int frame = 0; frame < frames; ++frame) finder.add(look.show, run.model, run.read(frame).state);
+    look.show_max = finder.end();
+}
+
+int draw_figure(const RenderOptions& options, const CachedRun& run, const Scene& scene,
+                const RunFolder& folder, const ClipOptions& clip_options) {
+    const std::filesystem::path file = write_vector_still(
+        scene, run.model, run.placement, folder, clip_options, [&](int frame) { return run.read(frame); });
+    if (!options.output.quiet) fmt::print("  {}\n", file.string());
+    return exit_done;
+}
+
 int render(const RenderOptions& options) {
     const CachedRun run = open_cached_run(options.run, options.overrides);
     Scene scene = run.scene;
@@ -172,6 +190,8 @@ int render(const RenderOptions& options) {
     const PieceOptions& pieces = options.pieces;
     if (turns && !pieces.whole())
         throw UsageError("--turntable is drawn on one machine: it does not go with --slurm");
+    const int frames = run.usable_frames();
+    set_scale(run, frames, scene.look);
     const std::vector<FrameRange> ranges = cut_frames(clip_options.first, clip_options.last, options.parts);
     if (pieces.cluster.submit) return send(options, scene, run, folder, clip_options, ranges);
     const bool range_only = pieces.point >= 0;
@@ -182,7 +202,7 @@ int render(const RenderOptions& options) {
         narrow_to_range(ranges[static_cast<std::size_t>(pieces.point)], clip_options);
     }
     if (pieces.collect) gather_ranges(ranges, scene, folder, clip_options);
-    check_clip(scene, folder, clip_options);
+    if (clip_options.format.empty()) check_clip(scene, folder, clip_options);
     std::filesystem::create_directories(folder.frames());
     // Tasks with other ranges write there at the same time: they own no more than their pictures.
     std::optional<FolderLock> lock;
@@ -190,8 +210,8 @@ int render(const RenderOptions& options) {
         lock.emplace(folder.root);
         remove_partial_files(folder.frames());
     }
-    const int frames = run.usable_frames();
     run.require(turns ? 0 : clip_options.first, frames);
+    if (!clip_options.format.empty()) return draw_figure(options, run, scene, folder, clip_options);
     // Until here a signal ends the program: there is nothing to finish.
     const InterruptWatch watch;
     if (turns) return draw_turntable(options, run, scene, folder, clip_options, std::min(still, frames - 1));
@@ -210,6 +230,11 @@ void add_render(CommandLine& line) {
     add_overrides(command, o.overrides, "key=value of [camera], [look] or clip.size");
     add_picture_options(command, o.pictures);
     add_piece_options(command, o.pieces);
+    command
+        .add_option("--format", o.pictures.format,
+                    "of --still: png, or its component view as a figure for a page, svg or pdf")
+        ->check(CLI::IsMember({"png", "svg", "pdf"}))
+        ->capture_default_str();
     command.add_option("--parts", o.parts, "ranges that a cluster draws the frames in (default: chosen)")
         ->check(CLI::Range(1, 1000));
     command.add_option("--still", o.pictures.still, "this frame alone, without a video")

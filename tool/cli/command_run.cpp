@@ -16,6 +16,7 @@
 #include "tool/folder/folder_lock.hpp"
 #include "tool/picture/clip.hpp"
 #include "tool/report/page.hpp"
+#include "tool/run/draft.hpp"
 #include "tool/run/failure_bundle.hpp"
 #include "tool/run/run_json.hpp"
 #include "tool/run/run_source.hpp"
@@ -51,10 +52,18 @@ void print_summary(const OutputOptions& options, const RunFolder& folder,
     fmt::print("  {}\n  {}\n", folder.stats().string(), folder.report().string());
 }
 
+// What a draft left is worth no question.
+bool is_draft(const RunFolder& folder) {
+    const nlohmann::ordered_json run = read_run_json(folder);
+    return run.contains("draft") && run["draft"] == true;
+}
+
 int make_run(const fs::path& file, const RunOptions& options, bool pictures) {
     const auto begin = std::chrono::steady_clock::now();
     Scene scene = load_scene(file, options.overrides);
-    const RunFolder folder{options.folder.empty() ? fs::path("output") / scene.name : options.folder};
+    if (options.draft) scene = draft_of(std::move(scene));
+    const std::string folder_name = scene.name + (options.draft ? "_draft" : "");
+    const RunFolder folder{options.folder.empty() ? fs::path("output") / folder_name : options.folder};
     ClipOptions clip_options = clip_options_of(options.pictures, scene);
     clip_options.textures = scene.home;
     Simulation simulation = start_simulation(scene);
@@ -63,12 +72,17 @@ int make_run(const fs::path& file, const RunOptions& options, bool pictures) {
         require_explicit_stability(simulation.model, simulation.options, scene.solver.step);
     if (pictures) check_clip(scene, folder, clip_options);
 
-    const Existing existing = options.force    ? Existing::replace
-                              : options.resume ? Existing::resume
-                                               : Existing::refuse;
     // Until here a signal ends the program: there is nothing to finish.
     const InterruptWatch watch;
     const FolderLock lock(folder.root);
+    const Existing existing = options.force      ? Existing::replace
+                              : options.resume   ? Existing::resume
+                              : is_draft(folder) ? Existing::replace
+                                                 : usual_existing(folder, scene);
+    const bool goes_on = existing == Existing::resume && !options.resume && fs::exists(folder.record(0));
+    if (goes_on && !options.output.quiet)
+        fmt::print(stderr, "{}: going on with what an unfinished run left in {}\n", scene.name,
+                   folder.root.string());
     const std::uint64_t hash = open_run(folder, scene, existing, clip_options.textures);
 
     const int threads = thread_count(options.threads);
@@ -98,7 +112,8 @@ int make_run(const fs::path& file, const RunOptions& options, bool pictures) {
         }
     };
 
-    Progress progress(scene.name, scene.clip.frames(), options.output.quiet);
+    // Frames before those asked for are simulated too.
+    Progress progress(scene.name, std::min(scene.clip.frames(), clip_options.last + 1), options.output.quiet);
     const auto done = [&](int frame) { progress.show(frame + 1, std::min(cached, frame + 1)); };
     std::optional<ClipReport> report;
     const auto conclude = [&](const char* status) {
@@ -107,6 +122,7 @@ int make_run(const fs::path& file, const RunOptions& options, bool pictures) {
         nlohmann::ordered_json json =
             run_json(scene, simulation, source, threads, status, report ? &*report : nullptr);
         json["command"] = command_of_run(options);
+        if (options.draft) json["draft"] = true;
         json["wall_seconds"] =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         write_whole_file(folder.run_json(), json.dump(2) + "\n");
@@ -143,7 +159,9 @@ int simulate(const RunOptions& options) {
 
 void add_run_options(const CommandLine& line, CLI::App& command, RunOptions& o) {
     o.words = line.words();
-    command.add_option("SCENE", o.scenes, "scene files, each made into a clip of its own")->required();
+    command
+        .add_option("SCENE", o.scenes, "scene files, each made into a clip of its own; - is standard input")
+        ->required();
     command.add_option(
         "-o", o.folder,
         "folder of the run (default: output/<scene name>); of several scenes, the folder around theirs");
@@ -151,6 +169,8 @@ void add_run_options(const CommandLine& line, CLI::App& command, RunOptions& o) 
     add_threads(command, o.threads);
     command.add_flag("--resume", o.resume, "go on from the last frame in the folder");
     command.add_flag("--force", o.force, "start anew in a folder that holds a run");
+    command.add_flag("--draft", o.draft,
+                     "coarse and quick, into output/<scene name>_draft, as often as you like");
     command.add_flag("--allow-unstable", o.allow_unstable,
                      "simulate although the step is beyond the limit of the springs handled explicitly");
     command.add_flag("--compare-whole", o.compare_whole,
@@ -165,6 +185,8 @@ void add_run(CommandLine& line) {
     const auto [command, o] = line.add("run", "simulate, render both views, encode", run);
     add_run_options(line, command, o);
     add_picture_options(command, o.pictures);
+    command.add_option("--still", o.pictures.still, "this frame alone, without a video")
+        ->check(CLI::NonNegativeNumber);
 }
 
 void add_simulate(CommandLine& line) {

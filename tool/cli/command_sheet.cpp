@@ -12,6 +12,7 @@
 #include "tool/cli/common_options.hpp"
 #include "tool/cli/picture_options.hpp"
 #include "tool/folder/cached_run.hpp"
+#include "tool/picture/figure.hpp"
 #include "tool/picture/view.hpp"
 
 namespace unravel::tool {
@@ -50,20 +51,28 @@ std::array<Image, 2> draw_entry(const Entry& entry, const PictureOptions& option
     const int frame = entry.frame < 0 ? frames - 1 : entry.frame;
     run.require(std::max(frame, 0), frames);
     const auto edges = drawn_edges(run.model);
-    ComponentColors colors;
-    DrawFrame drawing;
-    for (int k = 0; k <= frame; ++k) {
-        const FrameRecord record = run.read(k);
-        const std::vector<Rgb>& components = colors.assign(record.component, edges);
-        if (k == frame)
-            make_draw_frame(run.scene, run.model, record, components, drawing, clip.views.front().camera);
-    }
     const DrawScene drawn = make_draw_scene(run.scene, run.model, run.placement, run.folder.root);
+    ComponentColors colors;
+    SteadyColors steady;
+    DrawFrame drawing;
+    FrameRecord record;
+    for (int k = 0; k <= frame; ++k) {
+        record = run.read(k);
+        const std::vector<Rgb>& components = steady.follow(colors.assign(record.component, edges));
+        if (k == frame)
+            make_draw_frame(run.scene, run.model, drawn, record, components, drawing,
+                            clip.views.front().camera);
+    }
     const GlContext context(clip.device);
-    Renderer renderer(context, drawn, {size[0], size[1], options.samples, options.supersample});
+    Renderer renderer(context, drawn,
+                      {size[0], size[1], options.samples, options.supersample, false, clip.quality});
     std::array<Image, 2> pictures;
     renderer.draw(DrawStyle::textured, drawing, pictures[0]);
-    renderer.draw(DrawStyle::components, drawing, pictures[1]);
+    if (run.scene.look.theme == Theme::paper)
+        pictures[1] =
+            figure_picture(PaperFigure(run.scene, run.model, drawn), record, drawing, size[0], size[1]);
+    else
+        renderer.draw(DrawStyle::components, drawing, pictures[1]);
     return pictures;
 }
 

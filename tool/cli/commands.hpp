@@ -10,8 +10,10 @@ namespace unravel::tool {
 // Each adds one command, described and done in the file of its name (command_run.cpp has two).
 void add_run(CommandLine& line);
 void add_simulate(CommandLine& line);
+void add_preview(CommandLine& line);
 void add_render(CommandLine& line);
 void add_sheet(CommandLine& line);
+void add_gallery(CommandLine& line);
 void add_export(CommandLine& line);
 void add_accuracy(CommandLine& line);
 void add_inspect(CommandLine& line);
@@ -20,6 +22,7 @@ void add_bench(CommandLine& line);
 void add_schema(CommandLine& line);
 void add_check(CommandLine& line);
 void add_stability(CommandLine& line);
+void add_verify(CommandLine& line);
 void add_doctor(CommandLine& line);
 void add_describe(CommandLine& line);
 

@@ -28,6 +28,9 @@ bool parse_pair(std::string_view text, char separator, int& a, int& b) {
 void apply_look(const PictureOptions& options, Look& look) {
     if (!options.show.empty())
         look.show = static_cast<Show>(std::ranges::find(show_words, options.show) - std::begin(show_words));
+    if (!options.theme.empty())
+        look.theme =
+            static_cast<Theme>(std::ranges::find(theme_words, options.theme) - std::begin(theme_words));
     look.legend = look.legend || options.legend;
     look.transparent = look.transparent || options.transparent;
     if (options.motion_blur > 0) look.motion_blur = options.motion_blur;
@@ -115,6 +118,17 @@ void add_view_options(CLI::App& command, PictureOptions& o) {
         ->check(CLI::Range(1, 64));
     command.add_option("--supersample", o.supersample, "draw this many times larger and average")
         ->check(CLI::Range(1, 4));
+    command
+        .add_option(
+            "--quality", o.quality,
+            "of textured pictures: draft to find camera and motion, standard, or final: the mean of 32 "
+            "pictures, with depth of field and motion blur")
+        ->check(CLI::IsMember({"draft", "standard", "final"}))
+        ->capture_default_str();
+    command
+        .add_option("--theme", o.theme,
+                    "the component view on a screen's dark ground, or as a figure on paper (default: dark)")
+        ->check(CLI::IsMember({"dark", "paper"}));
 }
 
 void add_picture_options(CLI::App& command, PictureOptions& o) {
@@ -140,6 +154,8 @@ void add_picture_options(CLI::App& command, PictureOptions& o) {
     command.add_option("--crf", o.crf, "quality of the video, smaller is better")
         ->check(CLI::NonNegativeNumber);
     command.add_option("--preset", o.preset, "the encoder's effort");
+    command.add_flag("--full-chroma", o.full_chroma,
+                     "colour for every pixel of an mp4 or webm (4:4:4), which not every player shows");
     command.add_flag("--pictures,!--no-pictures", o.pictures, "write PNG frames (default: yes)");
 }
 
@@ -156,11 +172,19 @@ FrameRange frames_of(const std::string& frames, const Scene& scene) {
 ClipOptions clip_options_of(const PictureOptions& options, Scene& scene) {
     ClipOptions clip;
     apply_look(options, scene.look);
+    if (scene.look.transparent && scene.look.theme == Theme::paper)
+        throw UsageError("a page is white all over: --theme paper does not go with --transparent");
+    if (options.format != "png") clip.format = options.format;
+    const bool figure = !clip.format.empty();
+    if (figure && (options.still < 0 || options.turntable > 0))
+        throw UsageError(fmt::format("--format {}: a figure is of one frame; add --still", options.format));
+    if (figure && options.style != "both" && options.style != "components")
+        throw UsageError(fmt::format("--format {}: figures are of the component view", options.format));
     if (!options.size.empty() && !parse_pair(options.size, 'x', scene.clip.size[0], scene.clip.size[1]))
         throw UsageError(fmt::format("--size {}: write it as 1920x1080", options.size));
     clip.views.clear();
     for (const std::size_t camera : cameras_of(options.camera, scene)) {
-        for (const Layout layout : layouts_of(options.style)) {
+        for (const Layout layout : layouts_of(figure ? "components" : options.style)) {
             const ClipView view = make_view(scene, layout, camera);
             if (std::ranges::find(clip.views, view.name, &ClipView::name) != clip.views.end())
                 throw UsageError(fmt::format("--style, --camera: two views would be named {}", view.name));
@@ -171,6 +195,9 @@ ClipOptions clip_options_of(const PictureOptions& options, Scene& scene) {
     clip.device = parse_device_choice(options.device);
     clip.samples = options.samples;
     clip.supersample = options.supersample;
+    clip.quality = options.quality == "draft"   ? Quality::draft
+                   : options.quality == "final" ? Quality::final_
+                                                : Quality::standard;
     const bool still = options.still >= 0 && options.turntable == 0;
     const std::string usual = still ? "none" : scene.look.transparent ? "mkv" : "mp4";
     const std::string video = options.video.empty() ? usual : options.video;
@@ -178,6 +205,7 @@ ClipOptions clip_options_of(const PictureOptions& options, Scene& scene) {
     clip.codec = options.codec;
     clip.preset = options.preset;
     clip.crf = options.crf;
+    clip.full_chroma = options.full_chroma;
     clip.keep_pictures = options.pictures;
     return clip;
 }

@@ -25,6 +25,10 @@ struct PictureOptions {
     std::string video;  ///< mp4, webm, mkv, gif, none; empty: mp4, or mkv where frames have an alpha
     std::string codec, preset;
     int crf = -1;
+    bool full_chroma = false;
+    std::string quality = "standard";  ///< draft, standard, final
+    std::string theme;                 ///< of the component view; empty: as the scene says
+    std::string format = "png";        ///< of a still; svg, pdf: its component view as a figure
     bool pictures = true;
 };
 

@@ -21,6 +21,9 @@ std::string name_of_render(const PictureOptions& o, const std::vector<std::strin
     add(o.still >= 0, fmt::format("still_{}", o.still));
     add(!o.size.empty(), o.size);
     add(!o.show.empty(), o.show);
+    add(o.quality != "standard", o.quality);
+    add(!o.theme.empty(), o.theme);
+    add(o.full_chroma, "full_chroma");
     add(o.legend, "legend");
     add(o.transparent, "transparent");
     add(o.motion_blur > 0, fmt::format("motion_blur_{}", o.motion_blur));

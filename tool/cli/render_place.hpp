@@ -1,6 +1,7 @@
 #pragma once
 
 #include "sim/scene/scene.hpp"
+#include "tool/base/names.hpp"
 #include "tool/cli/picture_options.hpp"
 #include "tool/folder/run_folder.hpp"
 #include "tool/picture/clip.hpp"

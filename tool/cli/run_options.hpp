@@ -17,6 +17,7 @@ struct RunOptions {
     std::vector<std::string> overrides;  ///< --set
     int threads = 0;                     ///< 0: one per processor
     bool resume = false, force = false;
+    bool draft = false;           ///< coarse and quick, in a folder of its own
     bool allow_unstable = false;  ///< run although explicit springs are beyond their limit
     bool compare_whole = false;
     PictureOptions pictures;

@@ -180,6 +180,8 @@ std::vector<std::string> command_of_run(const RunOptions& options) {
 int for_each_scene(const RunOptions& options, RunOne one) {
     const PieceOptions& pieces = options.pieces;
     if (options.scenes.size() == 1 && pieces.whole()) return one(options.scenes.front(), options);
+    if (!pieces.whole() && std::ranges::find(options.scenes, fs::path("-")) != options.scenes.end())
+        throw UsageError("a cluster's tasks read no standard input: write the scene to a file");
     const std::vector<ListedScene> list = list_scenes(options);
     if (pieces.cluster.submit) return send(options, list);
     if (pieces.collect) return conclude(options, list);

@@ -42,7 +42,7 @@ struct ExportSource {
     const ClothModel& model;
     std::vector<ClothSurface> surfaces;  ///< (cloths)
     int first = 0, last = 0;             ///< frames
-    int fps = 30;
+    Rate fps;
     std::function<FrameRecord(int frame)> read;  ///< throws InputError
     std::function<bool(int frame)> done;         ///< after each frame; false: stop, nothing is kept
     std::vector<ExportLook> looks = {};          ///< (cloths), or none

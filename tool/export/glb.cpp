@@ -146,7 +146,7 @@ public:
 
 private:
     std::size_t frames() const { return static_cast<std::size_t>(source_.frames()); }
-    double time_of(std::size_t k) const { return (source_.first + static_cast<double>(k)) / source_.fps; }
+    double time_of(std::size_t k) const { return source_.fps.time_of(source_.first + static_cast<int>(k)); }
 
     std::size_t add_node(Json node) {
         document_["nodes"].push_back(std::move(node));
@@ -277,7 +277,7 @@ private:
         if (times_ < 0) {
             std::vector<float> at(frames());
             for (std::size_t k = 0; k < at.size(); ++k)
-                at[k] = static_cast<float>(static_cast<double>(k) / source_.fps);
+                at[k] = static_cast<float>(source_.fps.time_of(static_cast<int>(k)));
             times_ = binary_.scalars(at, true);
         }
         return times_;

@@ -24,7 +24,7 @@ std::vector<std::uint8_t> mdd_header(const ExportSource& source, std::uint32_t p
     append(out, static_cast<std::uint32_t>(source.frames()), true);
     append(out, points, true);
     for (int k = 0; k < source.frames(); ++k) {
-        const auto t = static_cast<float>(static_cast<double>(k) / source.fps);
+        const auto t = static_cast<float>(source.fps.time_of(k));
         append(out, std::bit_cast<std::uint32_t>(t), true);
     }
     return out;

@@ -64,7 +64,7 @@ void add_surroundings(ExportSource& source, const Scene& scene, bool cameras) {
         ExportSolid out;
         out.name = solid.name;
         out.color = parse_color(solid.color.empty() ? scene.look.solid : solid.color);
-        out.moves = !solid.motion.empty();
+        out.moves = solid.moves();
         out.pose = [solid](double t) { return solid_pose(solid, t); };
         give_shape(solid, out);
         source.solids.push_back(std::move(out));

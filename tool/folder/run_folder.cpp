@@ -14,6 +14,7 @@
 #include "sim/run/frame_record.hpp"
 #include "sim/scene/limits.hpp"
 #include "sim/scene_file/load.hpp"
+#include "sim/scene_file/look_pictures.hpp"
 #include "tool/base/version.hpp"
 #include "tool/folder/clip_view.hpp"
 
@@ -84,7 +85,7 @@ namespace {
 
 std::vector<std::string> named_files(const Scene& scene) {
     std::vector<std::string> names;
-    for (const ClothLook& look : scene.look.cloth) names.push_back(look.texture);
+    for (const NamedPicture& picture : look_pictures(scene.look)) names.push_back(picture.file);
     for (const Cloth& cloth : scene.cloths) names.push_back(cloth.mesh.file);
     for (const Solid& solid : scene.solids) {
         names.push_back(solid.mesh.file);
@@ -128,6 +129,22 @@ void refuse_changed_meshes(const RunFolder& folder, const Scene& before, const S
 }
 
 }  // namespace
+
+Existing usual_existing(const RunFolder& folder, const Scene& scene) {
+    if (!fs::exists(folder.scene())) return fs::exists(folder.cache()) ? Existing::refuse : Existing::resume;
+    try {
+        const std::string before = read_whole_text(folder.scene(), largest_scene);
+        const Scene earlier = parse_scene(before, folder.scene().string(), folder.root);
+        const nlohmann::ordered_json run = read_run_json(folder);
+        const bool complete = run.contains("status") && run["status"] == "complete";
+        // A still is complete without the frames behind it.
+        const bool whole = run.contains("frames") && run["frames"] == earlier.clip.frames();
+        if (complete && whole) return Existing::refuse;
+        return simulated_part(earlier) == simulated_part(scene) ? Existing::resume : Existing::replace;
+    } catch (const SceneError&) {
+        return Existing::refuse;  // of another version, which may be worth keeping
+    }
+}
 
 std::uint64_t open_run(const RunFolder& folder, const Scene& scene, Existing existing,
                        const fs::path& textures) {
@@ -231,6 +248,15 @@ std::string why_unusable(const RunFolder& folder, int frame, std::uint64_t scene
         "scene.toml was changed since, or that version understood it differently; draw it with the "
         "version that made it, or simulate it again with `unravel run SCENE --force`",
         version_of_run(folder), version());
+}
+
+FrameRecord read_frame(const RunFolder& folder, int frame, std::uint64_t scene_hash, std::size_t particles,
+                       std::size_t springs) {
+    try {
+        return read_record(folder.record(frame), scene_hash, particles, springs);
+    } catch (const InputError&) {
+        throw InputError(folder.record(frame), why_unusable(folder, frame, scene_hash));
+    }
 }
 
 }  // namespace unravel::tool

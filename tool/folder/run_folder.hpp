@@ -45,6 +45,10 @@ public:
 
 enum class Existing { refuse, resume, replace };
 
+/// What to do with what is in a folder where nothing was said: a run that is complete, with all its frames,
+/// is not touched; one that is not goes on where it is of the same scene, and makes room where it is not.
+Existing usual_existing(const RunFolder& folder, const Scene& scene);
+
 /// Makes the folder ready for a run of this scene: creates it, removes what a killed run left half-written,
 /// and where a run is there already refuses, goes on from it, or removes it. Going on with a changed scene is
 /// refused with what changed. Pictures that the scene names relative to `textures` are copied along. Returns
@@ -65,6 +69,10 @@ int cached_frames(const RunFolder& folder, const Scene& scene, std::uint64_t sce
 /// it is damaged, or the scene asked for differs from the run's in more than its picture. For a frame that
 /// cached_frames() did not count.
 std::string why_unusable(const RunFolder& folder, int frame, std::uint64_t scene_hash);
+
+/// A frame of the cache. Throws InputError with why_unusable() where it can't be read.
+FrameRecord read_frame(const RunFolder& folder, int frame, std::uint64_t scene_hash, std::size_t particles,
+                       std::size_t springs);
 
 /// Hash of the scene as run. Only what changes the simulation counts.
 std::uint64_t scene_hash(const Scene& scene);

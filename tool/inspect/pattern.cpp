@@ -99,6 +99,13 @@ Pattern implicit_pattern(const ClothModel& model) {
     for (std::size_t s = 0; s < model.springs.size(); ++s)
         couple(pattern, model.springs.i[s], model.springs.j[s]);
     for (std::size_t s = 0; s < model.bends.size(); ++s) couple(pattern, model.bends.i[s], model.bends.j[s]);
+    for (std::size_t s = 0; s < model.curvature.size(); ++s) {
+        const std::uint32_t count = model.curvature.count(s);
+        for (std::uint32_t a = 0; a < count; ++a) {
+            for (std::uint32_t b = a + 1; b < count; ++b)
+                couple(pattern, model.curvature.p[s][a], model.curvature.p[s][b]);
+        }
+    }
     settle(pattern);
     return pattern;
 }

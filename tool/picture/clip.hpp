@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/gl_context.hpp"
+#include "render/renderer.hpp"
 #include "render/video.hpp"
 #include "sim/model/model.hpp"
 #include "sim/run/frame_record.hpp"
@@ -23,11 +24,14 @@ struct ClipOptions {
     std::filesystem::path textures;  ///< folder that the scene's pictures are named relative to
     int samples = 0;                 ///< see RenderSettings
     int supersample = 1;
-    int first = 0;  ///< frames drawn: first … last
+    Quality quality = Quality::standard;  ///< of textured pictures
+    int first = 0;                        ///< frames drawn: first … last
     int last = 0;
     std::string video_ending = ".mp4";  ///< empty: no videos
     std::string codec, preset;
     int crf = -1;
+    bool full_chroma = false;  ///< see VideoSettings
+    std::string format;        ///< svg, pdf: the first frame's component view as such a file, no picture else
     bool reuse_pictures = false;  ///< frames whose picture lies there already are read, not drawn
     bool keep_pictures = true;    ///< write PNG frames
     bool shares_folder = false;   ///< other ranges of frames are drawn into the folder at the same time

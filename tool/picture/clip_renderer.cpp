@@ -16,9 +16,12 @@ namespace unravel::tool {
 
 namespace {
 
+// Times at which the shutter is open that a final picture is spread over.
+constexpr int final_exposures = 16;
+
 RenderSettings render_settings(const Scene& scene, const ClipOptions& options) {
-    return {scene.clip.size[0], scene.clip.size[1], options.samples, options.supersample,
-            scene.look.motion_blur > 1};
+    return {scene.clip.size[0],  scene.clip.size[1],         options.samples,
+            options.supersample, scene.look.motion_blur > 1, options.quality};
 }
 
 }  // namespace
@@ -27,10 +30,12 @@ VideoSettings video_settings(const Scene& scene, const ClipOptions& options, Lay
     VideoSettings settings;
     settings.width = view_width(layout, scene.clip.size[0]);
     settings.height = scene.clip.size[1];
-    settings.fps_num = scene.clip.fps;
+    settings.fps_num = scene.clip.fps.num;
+    settings.fps_den = scene.clip.fps.den;
     settings.codec = options.codec;
     settings.preset = options.preset;
     settings.crf = options.crf;
+    settings.full_chroma = options.full_chroma;
     settings.thin_lines = layout != Layout::textured;
     settings.alpha = scene.look.transparent;
     return settings;
@@ -66,6 +71,7 @@ ClipRenderer::ClipRenderer(const Scene& scene, const ClothModel& model, const Pl
     report_.renderer = drawing_.renderer().description();
     report_.renderer_summary = drawing_.context().summary();
     report_.software = drawing_.context().software();
+    if (scene.look.theme == Theme::paper) figure_ = std::make_unique<PaperFigure>(scene, model, drawn_);
     if (scene.look.legend) legend_ = std::make_unique<Legend>(scene, scene.clip.size[1]);
     for (FrameInFlight& slot : in_flight_) {
         slot.pictures.resize(options.views.size());
@@ -137,9 +143,21 @@ void ClipRenderer::prepare_folders() {
     }
 }
 
+/// Sub-frames of textured pictures. A final one is the mean of many pictures anyhow.
+int ClipRenderer::exposures() const {
+    return options_.quality == Quality::final_ ? std::max(final_exposures, scene_.look.motion_blur)
+                                               : scene_.look.motion_blur;
+}
+
+/// Whether a style is drawn of the frame itself: figures, and component views where the scene asks for no
+/// blur.
+bool ClipRenderer::of_still(DrawStyle style) const {
+    return style == DrawStyle::components && (figure_ || exposures() > scene_.look.motion_blur);
+}
+
 /// What the frames after this one have to know of it.
 void ClipRenderer::remember(const FrameRecord& record) {
-    if (scene_.look.motion_blur == 1) return;
+    if (exposures() == 1) return;
     previous_.t = record.state.t;
     previous_.x = record.state.x;
     previous_.v = record.state.v;
@@ -162,7 +180,10 @@ FrameInFlight* ClipRenderer::take(const FrameSource& source) {
         free_.pop(slot);
         slot->record = std::move(*record);
         make_exposures(scene_, model_, slot->record, has_previous_ ? &previous_ : nullptr, colors,
-                       slot->exposures);
+                       exposures(), slot->exposures);
+        slot->colors = colors;
+        if (std::ranges::any_of(shots_, [&](const Shot& shot) { return of_still(shot.style); }))
+            make_draw_frame(scene_, model_, drawn_, slot->record, colors, slot->still);
         remember(slot->record);
         return slot;
     }
@@ -176,16 +197,37 @@ Image& ClipRenderer::image_of(FrameInFlight& slot, std::size_t shot) const {
 // On the renderer's thread.
 void ClipRenderer::draw_shot(FrameInFlight& slot, std::size_t shot) {
     const Camera& camera = scene_.cameras[shots_[shot].camera];
-    const std::vector<double> times =
-        exposure_times(scene_, slot.exposures.size() > 1 ? slot.record.frame : 0);
+    if (of_still(shots_[shot].style)) {
+        slot.still.camera = camera_of_frame(scene_, camera, frame_time(scene_, slot.record.frame), model_,
+                                            slot.still.positions, drawn_);
+        return draw_still(slot, shot);
+    }
+    const std::vector<double> times = exposure_times(
+        scene_, slot.exposures.size() > 1 ? slot.record.frame : 0, static_cast<int>(slot.exposures.size()));
     for (std::size_t e = 0; e < slot.exposures.size(); ++e) {
         const double t = slot.exposures.size() > 1 ? times[e] : frame_time(scene_, slot.record.frame);
-        slot.exposures[e].camera = camera_at(scene_, camera, t);
+        slot.exposures[e].camera =
+            camera_of_frame(scene_, camera, t, model_, slot.exposures[e].positions, drawn_);
     }
     Image& image = image_of(slot, shot);
     drawing_.renderer().submit(shots_[shot].style, slot.exposures);
     drawing_.renderer().collect(image);
-    if (legend_ && shots_[shot].style != DrawStyle::textured) legend_->add(slot.record, image);
+    if (legend_ && shots_[shot].style != DrawStyle::textured) legend_->add(slot.record, slot.colors, image);
+}
+
+/// A component view of the frame itself.
+void ClipRenderer::draw_still(FrameInFlight& slot, std::size_t shot) {
+    Image& image = image_of(slot, shot);
+    const auto [width, height] = scene_.clip.size;
+    if (!figure_) {
+        drawing_.renderer().draw(DrawStyle::components, slot.still, image);
+        if (legend_) legend_->add(slot.record, slot.colors, image);
+        return;
+    }
+    image = canvas_image(width, height, 1, [&](Canvas& canvas) {
+        figure_->draw(canvas, slot.record, slot.still, scene_.clip.size[0], scene_.clip.size[1]);
+        if (legend_) Legend::draw(scene_, slot.record, slot.colors, scene_.clip.size[1], canvas);
+    });
 }
 
 void ClipRenderer::draw(FrameInFlight& slot) {

@@ -12,6 +12,7 @@
 #include "render/renderer.hpp"
 #include "tool/base/names.hpp"
 #include "tool/picture/clip.hpp"
+#include "tool/picture/figure.hpp"
 #include "tool/picture/legend.hpp"
 #include "tool/picture/render_thread.hpp"
 
@@ -24,6 +25,8 @@ inline constexpr std::size_t frames_in_flight = 5;
 struct FrameInFlight {
     FrameRecord record;
     std::vector<DrawFrame> exposures;
+    DrawFrame still;              ///< the frame itself, where component views are not drawn of its exposures
+    std::vector<Rgb> colors;      ///< (particles) by component
     std::vector<Image> pictures;  ///< (views)
     std::vector<Image> parts;     ///< (shots) drawn for a view of several, where no view is that shot alone
 };
@@ -77,6 +80,9 @@ private:
     bool take_over(const FrameInFlight& slot, std::size_t view, Image& picture) const;
     Image& image_of(FrameInFlight& slot, std::size_t shot) const;
     void draw_shot(FrameInFlight& slot, std::size_t shot);
+    void draw_still(FrameInFlight& slot, std::size_t shot);
+    int exposures() const;
+    bool of_still(DrawStyle style) const;
     void compose(FrameInFlight& slot, std::size_t view) const;
 
     const Scene& scene_;
@@ -95,7 +101,8 @@ private:
     bool has_previous_ = false;
     DrawScene drawn_;
     RendererOnThread drawing_;
-    std::unique_ptr<Legend> legend_;  // used on its thread
+    std::unique_ptr<Legend> legend_;       // used on its thread
+    std::unique_ptr<PaperFigure> figure_;  // where component views are figures on a page
     std::vector<std::unique_ptr<VideoWriter>> videos_;
     std::array<FrameInFlight, frames_in_flight> in_flight_;
     tbb::concurrent_bounded_queue<FrameInFlight*> free_;

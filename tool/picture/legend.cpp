@@ -18,7 +18,14 @@ namespace {
 
 // In units of the text's size.
 constexpr double line_height = 1.5, padding = 0.8, swatch = 0.85, panel_width = 23, bar_height = 0.8;
-constexpr Rgb panel{16, 18, 22}, legend_ink{232, 234, 238}, quiet_ink{168, 172, 182};
+constexpr int most_lines = 10;  // of any content
+
+struct Inks {
+    Rgb panel, text, quiet;
+    double cover;  // of what is behind the panel
+};
+constexpr Inks inks_on_screen{{16, 18, 22}, {232, 234, 238}, {168, 172, 182}, 0.72},
+    inks_on_page{{255, 255, 255}, {24, 26, 30}, {90, 94, 102}, 0};
 
 struct Row {
     std::vector<Rgb> colors;  // one, or some of many
@@ -36,20 +43,48 @@ std::ptrdiff_t count(const Values& values, Value value) {
     return std::count(values.begin(), values.end(), value);
 }
 
-Content component_content(const FrameRecord& record) {
-    std::vector<int> sizes;
-    for (const std::int32_t id : record.component) {
-        if (id < 0) continue;
-        if (static_cast<std::size_t>(id) >= sizes.size()) sizes.resize(static_cast<std::size_t>(id) + 1, 0);
-        ++sizes[static_cast<std::size_t>(id)];
+std::string grouped(std::ptrdiff_t number) {
+    std::string digits = std::to_string(number);
+    for (std::ptrdiff_t k = static_cast<std::ptrdiff_t>(digits.size()) - 3; k > 0; k -= 3)
+        digits.insert(static_cast<std::size_t>(k), ",");
+    return digits;
+}
+
+Content component_content(const FrameRecord& record, std::span<const Rgb> colors) {
+    constexpr std::size_t told = 5;
+    struct Component {
+        std::ptrdiff_t size = 0, left = 0;
+        Rgb color;  // what most of its particles wear [Boyer & Moore 1981]: while it changes, some lag behind
+    };
+    std::vector<Component> all;
+    for (std::size_t p = 0; p < record.component.size(); ++p) {
+        if (record.component[p] < 0) continue;
+        const auto id = static_cast<std::size_t>(record.component[p]);
+        if (id >= all.size()) all.resize(id + 1);
+        Component& component = all[id];
+        ++component.size;
+        if (component.left == 0) component.color = colors[p];
+        component.left += component.color == colors[p] ? 1 : -1;
     }
     Content content{.title = "components"};
-    content.numbers = sizes.size() == 1 ? "1 component" : fmt::format("{} components", sizes.size());
-    if (!sizes.empty()) content.numbers += fmt::format(", largest {}", std::ranges::max(sizes));
-    content.rows = {{{component_palette.begin(), component_palette.begin() + 5}, "solved apart"},
-                    {{constrained_color},
-                     fmt::format("fully constrained: {}", count(record.component, std::int32_t{-1}))},
-                    {{single_color}, "alone"}};
+    content.numbers = all.size() == 1 ? "1 component" : grouped(std::ssize(all)) + " components";
+    std::ranges::stable_sort(all, std::greater{}, &Component::size);
+    const std::ptrdiff_t alone = std::ranges::count(all, 1, &Component::size);
+    std::ptrdiff_t others = 0, particles = 0;
+    for (std::size_t k = 0; k < all.size() && all[k].size > 1; ++k) {
+        if (k < told) {
+            content.rows.push_back({{all[k].color}, grouped(all[k].size) + " particles"});
+            continue;
+        }
+        ++others;
+        particles += all[k].size;
+    }
+    if (others > 0)
+        content.rows.push_back(
+            {{}, fmt::format("{} more of {} particles", grouped(others), grouped(particles))});
+    if (alone > 0) content.rows.push_back({{single_color}, "alone: " + grouped(alone)});
+    content.rows.push_back(
+        {{constrained_color}, "fully constrained: " + grouped(count(record.component, std::int32_t{-1}))});
     return content;
 }
 
@@ -72,10 +107,10 @@ Content contact_content(const FrameRecord& record) {
                      {{constrained_color}, fmt::format("none: {}", none)}}};
 }
 
-Content content_of(const Look& look, const FrameRecord& record) {
+Content content_of(const Look& look, const FrameRecord& record, std::span<const Rgb> colors) {
     switch (look.show) {
         case Show::components:
-            return component_content(record);
+            return component_content(record, colors);
         case Show::splitting:
             return splitting_content(record);
         case Show::strain:
@@ -91,17 +126,17 @@ Content content_of(const Look& look, const FrameRecord& record) {
     return {};
 }
 
-void draw(Canvas& canvas, double size, double height, const Content& content) {
-    canvas.color(panel, 0.72);
+void draw_content(Canvas& canvas, double size, double height, const Inks& inks, const Content& content) {
+    canvas.color(inks.panel, inks.cover);
     canvas.rectangle(0, 0, panel_width * size, height);
     const double left = padding * size;
     double y = padding * size + size;
     canvas.font(size, true);
-    canvas.color(legend_ink);
+    canvas.color(inks.text);
     canvas.text(left, y, content.title);
     y += line_height * size;
     canvas.font(size);
-    canvas.color(quiet_ink);
+    canvas.color(inks.quiet);
     canvas.text(left, y, content.numbers);
     y += line_height * size;
     for (const Row& row : content.rows) {
@@ -109,9 +144,14 @@ void draw(Canvas& canvas, double size, double height, const Content& content) {
         for (const Rgb color : row.colors) {
             canvas.color(color);
             canvas.rectangle(x, y - swatch * size, swatch * size, swatch * size);
+            if (color == inks.panel) {  // white on white
+                canvas.color(inks.quiet);
+                canvas.width(0.06 * size);
+                canvas.frame(x, y - swatch * size, swatch * size, swatch * size);
+            }
             x += 1.1 * swatch * size;
         }
-        canvas.color(legend_ink);
+        canvas.color(inks.text);
         canvas.text(x + 0.4 * size, y, row.text);
         y += line_height * size;
     }
@@ -124,13 +164,28 @@ void draw(Canvas& canvas, double size, double height, const Content& content) {
                          bar_height * size);
     }
     y += line_height * size;
-    canvas.color(legend_ink);
+    canvas.color(inks.text);
     canvas.text(left, y, content.low);
     canvas.text(left + width, y, content.high, Align::end);
 }
 
 double lines_of(const Content& content) {
     return 2 + static_cast<double>(content.rows.size()) + (content.high.empty() ? 0 : 2);
+}
+
+Content timed_content(const Scene& scene, const FrameRecord& record, std::span<const Rgb> colors) {
+    Content content = content_of(scene.look, record, colors);
+    const std::string time = fmt::format("{:.2f} s", frame_time(scene, record.frame));
+    content.numbers = content.numbers.empty() ? time : time + ", " + content.numbers;
+    return content;
+}
+
+double text_size(int height) {
+    return std::max(7.0, height / 42.0);
+}
+
+double height_of(const Content& content, double size) {
+    return (2 * padding - 0.3 + line_height * lines_of(content)) * size;
 }
 
 // `value` of 255 parts of x.
@@ -153,20 +208,28 @@ struct Legend::Page {
 
 Legend::Legend(const Scene& scene, int height) : page_(std::make_unique<Page>()) {
     page_->scene = &scene;
-    page_->size = std::max(7.0, height / 42.0);
+    page_->size = text_size(height);
 }
 
 Legend::~Legend() = default;
 
-void Legend::add(const FrameRecord& record, Image& picture) {
-    Content content = content_of(page_->scene->look, record);
-    const std::string time = fmt::format("{:.2f} s", frame_time(*page_->scene, record.frame));
-    content.numbers = content.numbers.empty() ? time : time + ", " + content.numbers;
-    const double size = page_->size, tall = (2 * padding - 0.3 + line_height * lines_of(content)) * size;
+void Legend::draw(const Scene& scene, const FrameRecord& record, std::span<const Rgb> colors, int height,
+                  Canvas& canvas) {
+    const Content content = timed_content(scene, record, colors);
+    const double size = text_size(height), tall = height_of(content, size);
+    canvas.move_origin(padding * size, height - tall - padding * size);
+    draw_content(canvas, size, tall, inks_on_page, content);
+    canvas.move_origin(-padding * size, tall + padding * size - height);
+}
+
+void Legend::add(const FrameRecord& record, std::span<const Rgb> colors, Image& picture) {
+    const Content content = timed_content(*page_->scene, record, colors);
+    const double size = page_->size, tall = height_of(content, size);
     const int width = std::min(static_cast<int>(panel_width * size), picture.width);
     const int height = std::min(static_cast<int>(tall), picture.height);
     if (!page_->surface) {
-        page_->surface.reset(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
+        const double most = (2 * padding + line_height * most_lines) * size;
+        page_->surface.reset(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, static_cast<int>(most)));
         page_->context.reset(cairo_create(page_->surface.get()));
         if (cairo_status(page_->context.get()) != CAIRO_STATUS_SUCCESS)
             throw std::runtime_error("cairo has no memory for a legend");
@@ -176,7 +239,7 @@ void Legend::add(const FrameRecord& record, Image& picture) {
     cairo_paint(context);
     cairo_set_operator(context, CAIRO_OPERATOR_OVER);
     Canvas canvas(context);
-    draw(canvas, size, tall, content);
+    draw_content(canvas, size, tall, inks_on_screen, content);
     cairo_surface_flush(page_->surface.get());
 
     const unsigned char* const rows = cairo_image_surface_get_data(page_->surface.get());

@@ -13,6 +13,7 @@
 #include "base/whole_file.hpp"
 #include "sim/run/frame_record.hpp"
 #include "sim/scene_file/load.hpp"
+#include "sim/scene_file/look_pictures.hpp"
 #include "tool/base/version.hpp"
 
 namespace unravel::tool {
@@ -105,15 +106,15 @@ std::string picture_stamp(const Scene& scene, const ClipOptions& options, const 
                                 {"size", scene.clip.size},
                                 {"samples", options.samples},
                                 {"supersample", options.supersample},
+                                {"quality", static_cast<int>(options.quality)},
                                 {"look", fmt::format("{:016x}", hash_bytes(look.data(), look.size()))},
                                 // An orbit takes as long as the clip.
                                 {"duration", scene.clip.duration}};
     const bool turns = std::any_of(scene.cameras.begin(), scene.cameras.end(),
                                    [](const Camera& camera) { return camera.orbit != 0; });
     if (!turns) json.erase("duration");
-    for (const ClothLook& cloth : scene.look.cloth) {
-        if (!cloth.texture.empty()) json["textures"].push_back(texture_hash(cloth.texture));
-    }
+    for (const NamedPicture& picture : look_pictures(scene.look))
+        json["textures"].push_back(texture_hash((options.textures / picture.file).string()));
     return json.dump(2) + "\n";
 }
 

@@ -12,7 +12,7 @@ std::vector<Image> draw_still(const Scene& scene, const ClothModel& model, const
     const GlContext context(device);
     Renderer renderer(context, drawn, {scene.clip.size[0], scene.clip.size[1], 4, 1});
     DrawFrame frame;
-    make_draw_frame(scene, model, record, colors, frame);
+    make_draw_frame(scene, model, drawn, record, colors, frame);
     std::vector<Image> pictures(2);
     renderer.draw(DrawStyle::textured, frame, pictures[0]);
     renderer.draw(DrawStyle::components, frame, pictures[1]);

@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numbers>
-#include <stdexcept>
 
 #include "render/png.hpp"
 #include "sim/mesh/mesh_solid.hpp"
+#include "sim/scene_file/look_pictures.hpp"
 #include "sim/solids/motion.hpp"
 #include "sim/solids/shape.hpp"
+#include "tool/picture/camera_path.hpp"
 #include "tool/picture/display_mesh.hpp"
 #include "tool/picture/drawn_solid.hpp"
+#include "tool/picture/staging.hpp"
 #include "tool/picture/subdivision.hpp"
 #include "tool/picture/wire_colors.hpp"
 
@@ -37,7 +37,7 @@ WeavePattern pattern_of(Weave weave) {
 
 // A plane that faces straight up is drawn as the ground.
 bool is_ground(const Solid& solid) {
-    return solid.shape == Shape::plane && solid.motion.empty() &&
+    return solid.shape == Shape::plane && !solid.moves() &&
            (rotation_from_degrees(solid.rotation) * Vec3::UnitY()).y() > 0.9999;
 }
 
@@ -67,15 +67,15 @@ void set_bounds(const Scene& scene, const ClothModel& model, const Placement& pl
         high = high.cwiseMax(point);
     };
     for (const Vec3& x : placement.x) include(x.cast<float>());
-    const auto along = [&](const Motion& motion, auto&& visit) {
+    const auto along = [&](bool moves, auto&& visit) {
         visit(0.0);
-        if (motion.empty()) return;
+        if (!moves) return;
         for (int frame = 1; frame < scene.clip.frames(); ++frame) visit(frame_time(scene, frame));
     };
     for (const Solid& solid : scene.solids) {
         if (solid.shape == Shape::plane) continue;
         const Vec3f r = Vec3f::Constant(static_cast<float>(law_of(solid.shape).reach(solid)));
-        along(solid.motion, [&](double t) {
+        along(solid.moves(), [&](double t) {
             const Vec3f c = solid_pose(solid, t).translation().cast<float>();
             include(c - r);
             include(c + r);
@@ -89,10 +89,11 @@ void set_bounds(const Scene& scene, const ClothModel& model, const Placement& pl
             to = to.cwiseMax(x.cast<float>());
         });
         for (const Pin& pin : scene.cloths[c].pins)
-            along(pin.motion, [&](double t) {
+            along(!pin.motion.empty() || (pin.carried.by && pin.carried.by->moves()), [&](double t) {
                 const Vec3f moved = sample_motion(pin.motion, t).displacement.cast<float>();
-                include(from + moved);
-                include(to + moved);
+                const Eigen::Isometry3f carried = carried_pose(pin.carried, t).cast<float>();
+                include(carried * (from + moved));
+                include(carried * (to + moved));
             });
     }
     // What falls or swings ends on the ground, or nearly.
@@ -113,20 +114,10 @@ float spacing_of(const ClothModel& model) {
 
 }  // namespace
 
-Rgb parse_color(const std::string& text) {
-    const auto digits = text.find_first_not_of("0123456789abcdefABCDEF", 1);
-    if (text.size() != 7 || text[0] != '#' || digits != std::string::npos) {
-        throw std::invalid_argument("'" + text + "' is no colour: write it as #rrggbb");
-    }
-    const auto byte = [&](std::size_t at) {
-        return static_cast<std::uint8_t>(std::stoi(text.substr(at, 2), nullptr, 16));
-    };
-    return {byte(1), byte(3), byte(5)};
-}
-
 void check_textures(const Scene& scene, const std::filesystem::path& textures) {
-    for (const ClothLook& look : scene.look.cloth)
-        if (!look.texture.empty()) read_png(textures / look.texture);
+    for (const NamedPicture& picture : look_pictures(scene.look)) read_png(textures / picture.file);
+    DrawScene stage;
+    set_stage(scene.look, textures, stage);
 }
 
 DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Placement& placement,
@@ -160,10 +151,9 @@ DrawScene make_draw_scene(const Scene& scene, const ClothModel& model, const Pla
         if (is_ground(solid)) continue;
         SolidMesh& mesh = out.solids.emplace_back(drawn_solid(solid));
         mesh.color = parse_color(solid.color.empty() ? scene.look.solid : solid.color);
+        set_surface(scene.look, static_cast<std::size_t>(&solid - scene.solids.data()), textures, mesh);
     }
-    out.background = parse_color(scene.look.background);
-    out.ground = parse_color(scene.look.ground);
-    out.show_ground = scene.look.show_ground;
+    set_stage(scene.look, textures, out);
     out.ground_height = ground_height(scene, placement);
     set_bounds(scene, model, placement, out);
     return out;
@@ -218,35 +208,45 @@ Vec3 on_the_way(const ClothState& a, const ClothState& b, std::size_t p, double 
 }  // namespace
 
 double frame_time(const Scene& scene, int frame) {
-    return static_cast<double>(frame) / scene.clip.fps;
+    return scene.clip.fps.time_of(frame);
 }
 
-void make_draw_frame(const Scene& scene, const ClothModel& model, const FrameRecord& record,
-                     const std::vector<Rgb>& components, DrawFrame& out, std::size_t camera) {
+namespace {
+
+void fill_frame(const Scene& scene, const ClothModel& model, const FrameRecord& record,
+                const std::vector<Rgb>& components, DrawFrame& out) {
     out.positions.resize(model.size());
     for (std::size_t p = 0; p < model.size(); ++p) out.positions[p] = record.state.x[p].cast<float>();
     color_wires(scene.look, model, record, components, out);
     add_fine_grids(scene, model, out);
     pose_solids(scene, record.state.t, out);
-    out.camera = camera_at(scene, scene.cameras[camera], frame_time(scene, record.frame));
 }
 
-std::vector<double> exposure_times(const Scene& scene, int frame) {
-    const int count = frame == 0 ? 1 : scene.look.motion_blur;
-    if (count == 1) return {frame_time(scene, frame)};
+}  // namespace
+
+void make_draw_frame(const Scene& scene, const ClothModel& model, const DrawScene& drawn,
+                     const FrameRecord& record, const std::vector<Rgb>& components, DrawFrame& out,
+                     std::size_t camera) {
+    fill_frame(scene, model, record, components, out);
+    out.camera = camera_of_frame(scene, scene.cameras[camera], frame_time(scene, record.frame), model,
+                                 out.positions, drawn);
+}
+
+std::vector<double> exposure_times(const Scene& scene, int frame, int count) {
+    if (frame == 0 || count == 1) return {frame_time(scene, frame)};
     std::vector<double> times;
     for (int k = 0; k < count; ++k)
         times.push_back(frame_time(scene, frame) -
-                        scene.look.shutter / scene.clip.fps * (1 - (k + 0.5) / count));
+                        scene.look.shutter * scene.clip.fps.time_of(1) * (1 - (k + 0.5) / count));
     return times;
 }
 
 void make_exposures(const Scene& scene, const ClothModel& model, const FrameRecord& record,
-                    const ClothState* previous, const std::vector<Rgb>& components,
+                    const ClothState* previous, const std::vector<Rgb>& components, int count,
                     std::vector<DrawFrame>& out) {
-    const std::vector<double> times = exposure_times(scene, previous ? record.frame : 0);
+    const std::vector<double> times = exposure_times(scene, previous ? record.frame : 0, count);
     out.resize(times.size());
-    if (times.size() == 1) return make_draw_frame(scene, model, record, components, out[0]);
+    if (times.size() == 1) return fill_frame(scene, model, record, components, out[0]);
     // A frame that stands still, as on a turntable, was nowhere else.
     const double h = record.state.t - previous->t, pace = h > 0 ? 1 : 0;
     for (std::size_t e = 0; e < times.size(); ++e) {
@@ -260,44 +260,6 @@ void make_exposures(const Scene& scene, const ClothModel& model, const FrameReco
         add_fine_grids(scene, model, frame);
         pose_solids(scene, record.state.t - before, frame);
     }
-}
-
-namespace {
-
-// Catmull–Rom through unevenly spaced keys, at rest in the first and the last one.
-template <class Value>
-Vec3 through_keys(const std::vector<Camera::Key>& keys, double t, Value&& value) {
-    const std::size_t last = keys.size() - 1;
-    const auto slope = [&](std::size_t k) -> Vec3 {
-        if (k == 0 || k == last) return Vec3::Zero();
-        return (value(keys[k + 1]) - value(keys[k - 1])) / (keys[k + 1].time - keys[k - 1].time);
-    };
-    if (t <= keys.front().time) return value(keys.front());
-    if (t >= keys.back().time) return value(keys.back());
-    std::size_t k = 0;
-    while (keys[k + 1].time <= t) ++k;
-    const double h = keys[k + 1].time - keys[k].time, s = (t - keys[k].time) / h, s2 = s * s, s3 = s2 * s;
-    return (2 * s3 - 3 * s2 + 1) * value(keys[k]) + (s3 - 2 * s2 + s) * h * slope(k) +
-           (3 * s2 - 2 * s3) * value(keys[k + 1]) + (s3 - s2) * h * slope(k + 1);
-}
-
-}  // namespace
-
-CameraView camera_at(const Scene& scene, const Camera& camera, double t) {
-    Vec3 position = camera.position, target = camera.target;
-    if (!camera.keyframes.empty()) {
-        position = through_keys(camera.keyframes, t, [](const Camera::Key& key) { return key.position; });
-        target = through_keys(camera.keyframes, t, [](const Camera::Key& key) { return key.target; });
-    }
-    if (camera.orbit != 0) {
-        const double angle = camera.orbit * std::numbers::pi / 180.0 * t / scene.clip.duration;
-        position = target + Eigen::AngleAxisd(angle, Vec3::UnitY()) * (position - target);
-    }
-    CameraView view;
-    view.position = position.cast<float>();
-    view.target = target.cast<float>();
-    view.fov = static_cast<float>(camera.fov);
-    return view;
 }
 
 }  // namespace unravel::tool

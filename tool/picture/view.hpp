@@ -8,6 +8,8 @@
 #include "sim/run/frame_record.hpp"
 #include "sim/scene/scene.hpp"
 #include "tool/base/names.hpp"
+#include "tool/picture/camera_path.hpp"
+#include "tool/picture/staging.hpp"
 
 namespace unravel::tool {
 
@@ -26,24 +28,20 @@ void check_textures(const Scene& scene, const std::filesystem::path& textures);
 double frame_time(const Scene& scene, int frame);
 
 /// One frame of it, seen by the scene's camera of this index. `components`: colours of particles by
-/// component, which must have seen every earlier frame, in order: they are stable in time.
-void make_draw_frame(const Scene& scene, const ClothModel& model, const FrameRecord& record,
-                     const std::vector<Rgb>& components, DrawFrame& out, std::size_t camera = 0);
+/// component, which must have seen every earlier frame, in order: they are stable in time. `drawn`: of
+/// make_draw_scene().
+void make_draw_frame(const Scene& scene, const ClothModel& model, const DrawScene& drawn,
+                     const FrameRecord& record, const std::vector<Rgb>& components, DrawFrame& out,
+                     std::size_t camera = 0);
 
-/// Times at which a frame's shutter is open, evenly spread over the time before it [s]; one for frame 0 and
-/// where the scene asks for no motion blur.
-std::vector<double> exposure_times(const Scene& scene, int frame);
+/// `count` times at which a frame's shutter is open, evenly spread over the time before it [s]; one for
+/// frame 0.
+std::vector<double> exposure_times(const Scene& scene, int frame, int count);
 
 /// The same frame at each of its exposure times, without cameras. `previous`: the state one frame earlier,
 /// from which positions are interpolated with their velocities; null: there is none, and one exposure.
 void make_exposures(const Scene& scene, const ClothModel& model, const FrameRecord& record,
-                    const ClothState* previous, const std::vector<Rgb>& components,
+                    const ClothState* previous, const std::vector<Rgb>& components, int count,
                     std::vector<DrawFrame>& out);
-
-/// Camera of the scene at time t: smoothly through its keyframes, then the orbit about its target.
-CameraView camera_at(const Scene& scene, const Camera& camera, double t);
-
-/// "#rrggbb"; anything else throws std::invalid_argument (a checked scene holds nothing else).
-Rgb parse_color(const std::string& text);
 
 }  // namespace unravel::tool

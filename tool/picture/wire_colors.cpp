@@ -1,6 +1,8 @@
 #include "tool/picture/wire_colors.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include "render/palette.hpp"
 
@@ -12,7 +14,7 @@ constexpr std::uint8_t faint = 110, solid = 255;
 
 Rgb mix(Rgb a, Rgb b, double t) {
     const auto channel = [t](std::uint8_t x, std::uint8_t y) {
-        return static_cast<std::uint8_t>(x + t * (y - x) + 0.5);
+        return static_cast<std::uint8_t>(std::lround(x + t * (y - x)));
     };
     return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
 }
@@ -73,6 +75,32 @@ Rgb scale_color(double t) {
 double scale_end(const Look& look) {
     if (look.show_max > 0) return look.show_max;
     return look.show == Show::velocity ? 3 : 0.05;
+}
+
+void ScaleFinder::add(Show show, const ClothModel& model, const ClothState& state) {
+    const auto note = [&](double value) {
+        if (!(value > 1e-9)) return;
+        const int at = static_cast<int>(steps * (std::log10(value) + 9));
+        ++count_[static_cast<std::size_t>(std::clamp(at, 0, decades * steps - 1))];
+    };
+    if (show == Show::strain)
+        for (std::size_t s = 0; s < model.springs.stretch_count; ++s) note(strain_of(model, state, s));
+    else
+        for (const Vec3& v : state.v) note(v.norm());
+}
+
+double ScaleFinder::end() const {
+    const std::uint64_t all = std::accumulate(count_.begin(), count_.end(), std::uint64_t{0});
+    if (all == 0) return 0;
+    std::uint64_t below = 0;
+    std::size_t at = 0;
+    while (100 * (below += count_[at]) < 99 * all) ++at;
+    const double value = std::pow(10.0, static_cast<double>(at + 1) / steps - 9);
+    const double power = std::pow(10.0, std::floor(std::log10(value)));
+    // What falls on a round number by rounding is that number.
+    for (const double times : {1.0, 2.0, 5.0})
+        if (value <= 1.03 * times * power) return times * power;
+    return 10 * power;
 }
 
 std::size_t drawn_springs(const ClothModel& model, Show show) {

@@ -22,6 +22,19 @@ Rgb scale_color(double t);
 /// Where the scale of a scene's look ends: strain (1) or velocity [m/s].
 double scale_end(const Look& look);
 
+/// Finds where a scale has to end for a clip: above 99 of a hundred of its values, of all springs that are
+/// taut, or of all particles, in every frame.
+class ScaleFinder {
+public:
+    void add(Show show, const ClothModel& model, const ClothState& state);
+    /// 1, 2 or 5 times a power of ten; 0: nothing was seen that has a value.
+    double end() const;
+
+private:
+    static constexpr int decades = 12, steps = 100;  // from 1e-9 on, each decade in equal ratios
+    std::array<std::uint64_t, decades * steps> count_{};
+};
+
 /// Springs drawn in the component view, as particle pairs: stretch, and where the splitting is shown shear
 /// too. They are the model's first so many springs.
 std::size_t drawn_springs(const ClothModel& model, Show show);

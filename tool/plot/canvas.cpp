@@ -1,16 +1,21 @@
 #include "tool/plot/canvas.hpp"
 
+#include <cairo-pdf.h>
 #include <cairo-svg.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace unravel::tool {
@@ -48,28 +53,39 @@ void draw_on(cairo_surface_t* surface, double scale, const std::function<void(Ca
     require(cairo_status(context.get()));
 }
 
-// Cairo names glyphs and clips by number, from zero in each document: in a page that holds two of them, the
-// second would be written with the letters of the first. So names begin with a hash of the document.
+// Cairo names glyphs and clips by numbers that go on from document to document: the same picture has others
+// each time, and in a page that holds two of them the second may be written with the letters of the first. So
+// names are numbered as they come, behind a hash of the document.
 std::string with_own_names(const std::string& svg) {
-    std::uint64_t hash = 14695981039346656037u;  // FNV-1a
-    for (const char c : svg) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
-    char own[20];
-    std::snprintf(own, sizeof own, "p%016llx-", static_cast<unsigned long long>(hash));
     constexpr std::string_view before_names[] = {"id=\"", "href=\"#", "url(#"};
-    std::string named;
-    named.reserve(svg.size() + svg.size() / 4);
+    std::map<std::string, std::size_t> known;
+    std::vector<std::pair<std::size_t, std::size_t>> found;  // where a name was, and its number
+    std::string nameless;
     for (std::size_t k = 0; k < svg.size();) {
         const auto* const begins =
             std::find_if(std::begin(before_names), std::end(before_names),
                          [&](std::string_view text) { return svg.compare(k, text.size(), text) == 0; });
         if (begins == std::end(before_names)) {
-            named += svg[k++];
-        } else {
-            named.append(*begins).append(own);
-            k += begins->size();
+            nameless += svg[k++];
+            continue;
         }
+        nameless += *begins;
+        k += begins->size();
+        const std::size_t end = svg.find_first_of("\")", k);
+        found.emplace_back(nameless.size(),
+                           known.try_emplace(svg.substr(k, end - k), known.size()).first->second);
+        k = end;
     }
-    return named;
+    std::uint64_t hash = 14695981039346656037u;  // FNV-1a
+    for (const char c : nameless) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+    std::string named;
+    std::size_t from = 0;
+    for (const auto& [at, number] : found) {
+        named.append(nameless, from, at - from);
+        named += fmt::format("p{:016x}-{}", hash, number);
+        from = at;
+    }
+    return named.append(nameless, from);
 }
 
 }  // namespace
@@ -169,6 +185,17 @@ std::string canvas_svg(int width, int height, const std::function<void(Canvas&)>
         require(cairo_surface_status(surface.get()));
     }
     return with_own_names(svg);
+}
+
+std::string canvas_pdf(int width, int height, const std::function<void(Canvas&)>& draw) {
+    std::string pdf;
+    const Surface surface(cairo_pdf_surface_create_for_stream(append, &pdf, width, height));
+    // The same figure is to be the same bytes.
+    cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
+    draw_on(surface.get(), 1, draw);
+    cairo_surface_finish(surface.get());
+    require(cairo_surface_status(surface.get()));
+    return pdf;
 }
 
 Image canvas_image(int width, int height, double scale, const std::function<void(Canvas&)>& draw) {

@@ -28,6 +28,12 @@ public:
     /// Many rectangles in one stroke of ink: add each, then fill().
     void add_rectangle(double x, double y, double w, double h) { cairo_rectangle(cr_, x, y, w, h); }
     void fill() { cairo_fill(cr_); }
+    /// The path filled, and drawn around in the same colour.
+    void fill_and_stroke() {
+        cairo_close_path(cr_);
+        cairo_fill_preserve(cr_);
+        cairo_stroke(cr_);
+    }
     void frame(double x, double y, double w, double h);  ///< outlined
     void disc(double x, double y, double radius);
     /// Path of a polyline: move to the first point, line to the others, stroke.
@@ -53,6 +59,9 @@ private:
 /// What `draw` draws on a page of width × height, as an SVG document. Throws std::runtime_error where cairo
 /// fails.
 std::string canvas_svg(int width, int height, const std::function<void(Canvas&)>& draw);
+
+/// The same as a PDF of one page, one point for each unit.
+std::string canvas_pdf(int width, int height, const std::function<void(Canvas&)>& draw);
 
 /// The same as a picture, `scale` pixels per unit, on white.
 Image canvas_image(int width, int height, double scale, const std::function<void(Canvas&)>& draw);

@@ -145,10 +145,10 @@ void write_report_page(const Scene& scene, const ClothModel& model, const RunFol
         pictures.emplace_back(name, std::move(inside));
     }
     data["size"] = scene.clip.size;
-    data["fps"] = scene.clip.fps;
+    data["fps"] = scene.clip.fps.per_second();
     data["series"] = page_series(frames, reports, model);
     data["summary"] = page_summary(scene, model, frames, reports, facts.status);
-    data["warnings"] = page_warnings(scene, frames, reports, facts.status);
+    data["warnings"] = page_warnings(scene, model, frames, reports, facts.status);
     data["effects"] = Json::array();
     for (const Effect& effect : list_effects(scene)) {
         data["effects"].push_back({{"name", effect.name}, {"on", effect.on}, {"because", effect.because}});

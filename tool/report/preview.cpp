@@ -68,7 +68,7 @@ Image shrink(const Image& image, int width) {
             }
             const float count = static_cast<float>((bottom - top) * (right - left));
             for (int c = 0; c < 3; ++c)
-                out.at(x, y)[c] = encoded[static_cast<std::size_t>(4095 * sum[c] / count + 0.5f)];
+                out.at(x, y)[c] = encoded[static_cast<std::size_t>(std::lround(4095 * sum[c] / count))];
             out.at(x, y)[3] = 255;
         }
     }

@@ -4,6 +4,8 @@
 // Colours that are told apart on light and dark pages and by the colour-blind (Okabe & Ito).
 const plotColors = ['#2f86c6', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#8c6cff', '#8f99a6', '#aa8b00'];
 
+const printedWidth = 640;  // px, as in report.css
+
 // What is plotted: titles, and columns of data.series by name.
 function plotList(series) {
   const stages = Object.keys(series).filter((name) => name.startsWith('ms_'));
@@ -133,5 +135,12 @@ function makePlots(parent, numbers, series, seek) {
   };
   // dygraphs follow the window's width; the cursors have to follow them.
   addEventListener('resize', () => setTimeout(() => show(shown), 100));
+  // On paper all are as wide as report.css says, and drawn for that.
+  const redraw = (width) => {
+    for (const {graph, canvas} of plots) graph.resize(width ?? canvas.clientWidth, canvas.clientHeight);
+    show(shown);
+  };
+  addEventListener('beforeprint', () => redraw(printedWidth));
+  addEventListener('afterprint', () => redraw());
   return show;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "sim/run/findings.hpp"
 #include "tool/base/progress.hpp"
 
 namespace unravel::tool {
@@ -13,9 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Steps = std::span<const StepReport>;
-
-// Stretch springs longer than this look like rubber.
-constexpr double notable_strain = 0.2;
 
 double short_number(double value) {
     return std::stod(fmt::format("{:.5g}", value));
@@ -133,9 +131,9 @@ std::string page_summary(const Scene& scene, const ClothModel& model, const std:
         whole += r.rvm_whole.value_or(0);
         seconds += r.times.step();
     }
-    std::string text =
-        fmt::format("{}: {} frames at {} per second, {} steps of {:.4g} ms, {} particles", status,
-                    frames.size(), scene.clip.fps, reports.size(), 1e3 * scene.solver.step, model.size());
+    std::string text = fmt::format("{}: {} frames at {} per second, {} steps of {:.4g} ms, {} particles",
+                                   status, frames.size(), rate_text(scene.clip.fps), reports.size(),
+                                   1e3 * scene.solver.step, model.size());
     if (seconds > 0) text += fmt::format(", {} of simulation", duration_text(seconds));
     if (compared && whole > 0)
         text += fmt::format(", {:.1f}% fewer RVMs than undecomposed",
@@ -143,8 +141,9 @@ std::string page_summary(const Scene& scene, const ClothModel& model, const std:
     return text;
 }
 
-std::vector<std::string> page_warnings(const Scene& scene, const std::vector<PageFrame>& frames,
-                                       Steps reports, const std::string& status) {
+std::vector<std::string> page_warnings(const Scene& scene, const ClothModel& model,
+                                       const std::vector<PageFrame>& frames, Steps reports,
+                                       const std::string& status) {
     std::vector<std::string> warnings = scene.notes;
     const int wanted = scene.clip.frames();
     if (status != "complete" && static_cast<int>(frames.size()) < wanted) {
@@ -162,16 +161,7 @@ std::vector<std::string> page_warnings(const Scene& scene, const std::vector<Pag
             open, reports.size(), scene.solver.tolerance, scene.solver.max_iterations, first->step,
             first->t));
     }
-    const auto stretched = std::max_element(reports.begin(), reports.end(), [](const auto& a, const auto& b) {
-        return a.max_strain < b.max_strain;
-    });
-    if (stretched != reports.end() && stretched->max_strain > notable_strain) {
-        warnings.push_back(
-            fmt::format("The most stretched spring is {:.0f}% longer than at rest (step {} at {:.4g} s): "
-                        "stiffer cloth or a "
-                        "smaller step makes it less.",
-                        100 * stretched->max_strain, stretched->step, stretched->t));
-    }
+    for (std::string& line : findings(model, reports)) warnings.push_back(std::move(line));
     return warnings;
 }
 

@@ -21,7 +21,8 @@ std::string page_summary(const Scene& scene, const ClothModel& model, const std:
                          std::span<const StepReport> reports, const std::string& status);
 
 /// What a user should know before trusting the run, a sentence each.
-std::vector<std::string> page_warnings(const Scene& scene, const std::vector<PageFrame>& frames,
+std::vector<std::string> page_warnings(const Scene& scene, const ClothModel& model,
+                                       const std::vector<PageFrame>& frames,
                                        std::span<const StepReport> reports, const std::string& status);
 
 }  // namespace unravel::tool

@@ -59,7 +59,7 @@ Image picture_of_worst(const Scene& scene, const Simulation& simulation, const F
     std::vector<Rgb> colors(simulation.model.size(), unmarked);
     for (const std::uint32_t p : failure.particles) colors[p] = marked;
     DrawFrame frame;
-    make_draw_frame(scene, simulation.model, record, colors, frame);
+    make_draw_frame(scene, simulation.model, drawn, record, colors, frame);
     const GlContext context(options.device);
     Renderer renderer(context, drawn,
                       {scene.clip.size[0], scene.clip.size[1], options.samples, options.supersample});

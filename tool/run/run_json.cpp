@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/run/findings.hpp"
 #include "sim/step/plan_text.hpp"
 #include "sim/terms/effects.hpp"
 #include "tool/base/machine.hpp"
@@ -18,7 +19,9 @@ using Json = nlohmann::ordered_json;
 Json totals(const std::vector<StepReport>& reports, std::size_t particles) {
     std::uint64_t rvm = 0, rvm_whole = 0, iterations = 0, unconverged = 0;
     bool compared = !reports.empty();
-    double max_strain = 0, constrained = 0;
+    double max_strain = 0, max_strain_at = 0, constrained = 0, deepest = 0;
+    std::optional<std::uint64_t> crossings, in_solids;
+    double crossings_at = 0;
     std::uint32_t components = 0;
     StageTimes times;
     for (const StepReport& r : reports) {
@@ -27,7 +30,16 @@ Json totals(const std::vector<StepReport>& reports, std::size_t particles) {
         rvm_whole += r.rvm_whole.value_or(0);
         iterations += r.cg_iterations;
         unconverged += !r.converged;
-        max_strain = std::max(max_strain, r.max_strain);
+        if (r.max_strain > max_strain) {
+            max_strain = r.max_strain;
+            max_strain_at = r.t;
+        }
+        if (r.crossings && (!crossings || *r.crossings > *crossings)) {
+            crossings = r.crossings;
+            crossings_at = r.t;
+        }
+        if (r.in_solids) in_solids = std::max(in_solids.value_or(0), *r.in_solids);
+        deepest = std::max(deepest, r.deepest);
         constrained += r.constrained;
         components = std::max(components, r.components);
         times.contact += r.times.contact;
@@ -51,6 +63,15 @@ Json totals(const std::vector<StepReport>& reports, std::size_t particles) {
     json["unconverged_steps"] = unconverged;
     json["most_components"] = components;
     json["max_strain"] = max_strain;
+    json["max_strain_at"] = max_strain_at;
+    if (crossings) {
+        json["crossings"] = *crossings;
+        json["crossings_at"] = crossings_at;
+    }
+    if (in_solids) {
+        json["in_solids"] = *in_solids;
+        json["deepest"] = deepest;
+    }
     json["seconds"] = {{"contact", times.contact},   {"forces", times.forces}, {"graph", times.graph},
                        {"assembly", times.assembly}, {"solve", times.solve},   {"advance", times.advance},
                        {"measure", times.measure},   {"step", times.step()}};
@@ -58,6 +79,10 @@ Json totals(const std::vector<StepReport>& reports, std::size_t particles) {
 }
 
 }  // namespace
+
+Json rate_json(const Rate& rate) {
+    return rate.whole() ? Json(rate.num) : Json(rate_text(rate));
+}
 
 Json run_json(const Scene& scene, const Simulation& simulation, const RunSource& source, int threads,
               const std::string& status, const ClipReport* clip) {
@@ -71,8 +96,8 @@ Json run_json(const Scene& scene, const Simulation& simulation, const RunSource&
     json["particles"] = simulation.model.size();
     json["springs"] = {{"stretch", simulation.model.springs.stretch_count},
                        {"shear", simulation.model.springs.size() - simulation.model.springs.stretch_count},
-                       {"bend", simulation.model.bends.size()}};
-    json["fps"] = scene.clip.fps;
+                       {"bend", simulation.model.bends.size() + simulation.model.curvature.size()}};
+    json["fps"] = rate_json(scene.clip.fps);
     json["frames"] = source.hashes().size();
     const std::vector<StepReport> reports = source.reports();
     json["steps"] = reports.size();
@@ -91,6 +116,7 @@ Json run_json(const Scene& scene, const Simulation& simulation, const RunSource&
     }
     json["plan"] = plan_json(simulation.ws.plan.step);
     json["warnings"] = scene.notes;
+    for (std::string& line : findings(simulation.model, reports)) json["warnings"].push_back(std::move(line));
     json["totals"] = totals(reports, simulation.model.size());
     for (const std::uint64_t hash : source.hashes())
         json["state_hashes"].push_back(fmt::format("{:016x}", hash));

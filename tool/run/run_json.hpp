@@ -10,6 +10,9 @@
 
 namespace unravel::tool {
 
+/// Frames per second as files for programs have it: a whole number, or a text such as "30000/1001".
+nlohmann::ordered_json rate_json(const Rate& rate);
+
 /// The content of run.json. `status` is "complete", "interrupted" or "failed"; `clip` is null where nothing
 /// was drawn.
 nlohmann::ordered_json run_json(const Scene& scene, const Simulation& simulation, const RunSource& source,

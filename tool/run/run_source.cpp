@@ -26,19 +26,28 @@ RunSource::RunSource(const Scene& scene, const RunFolder& folder, std::uint64_t 
       simulation_(simulation),
       cached_(cached),
       arena_(threads),
-      reports_(folder.root) {}
+      reports_(folder.root) {
+    simulation.options.solve.stop = InterruptWatch::flag();
+}
 
 std::optional<FrameRecord> RunSource::next() {
     if (frame_ >= scene_.clip.frames() || InterruptWatch::requested()) return std::nullopt;
     FrameRecord record;
+    std::optional<FrameRecord> simulated;
     if (frame_ < cached_) {
         record = read_record(folder_.record(frame_), scene_hash_, simulation_.model.size(),
                              simulation_.model.springs.size());
         if (frame_ + 1 == cached_) restore(simulation_, record);
     } else {
         StageTimer timer;
-        arena_.execute([&] { record = simulate(); });
+        try {
+            arena_.execute([&] { simulated = simulate(); });
+        } catch (const Stopped&) {
+            return std::nullopt;
+        }
         timer.lap(seconds_);
+        if (!simulated) return std::nullopt;
+        record = std::move(*simulated);
         write_record(folder_.record(frame_), scene_hash_, record);
     }
     ++frame_;
@@ -52,7 +61,9 @@ std::optional<FrameRecord> RunSource::next() {
     return record;
 }
 
-FrameRecord RunSource::simulate() {
+// Nothing where it is to stop before frame 0.
+std::optional<FrameRecord> RunSource::simulate() {
+    if (!settle(simulation_, [] { return !InterruptWatch::requested(); })) return std::nullopt;
     return frame_ == 0 ? present_record(simulation_) : next_record(simulation_);
 }
 

@@ -22,8 +22,8 @@ public:
     RunSource(const Scene& scene, const RunFolder& folder, std::uint64_t scene_hash, Simulation& simulation,
               int cached, int threads);
 
-    /// The next frame; nothing after the last, or when a stop was asked for. Throws what simulation and disk
-    /// throw.
+    /// The next frame; nothing after the last, or when a stop was asked for, also in the middle of a step.
+    /// Throws what simulation and disk throw.
     std::optional<FrameRecord> next();
 
     /// Writes stats.csv with all rows so far.
@@ -36,7 +36,7 @@ public:
     int cached() const { return cached_; }
 
 private:
-    FrameRecord simulate();
+    std::optional<FrameRecord> simulate();
     void take_earlier_times();
 
     const Scene& scene_;

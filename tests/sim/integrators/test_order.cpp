@@ -159,6 +159,12 @@ std::vector<Vec3> accelerations(const Problem& p, const std::vector<Vec3>& x, co
         const Vec3 d = x[b.j[k]] - x[b.i[k]];
         push(b.i[k], b.j[k], bend_force(d.norm(), b.rest[k], b.stiffness[k], b.slope[k]) * d / d.norm());
     }
+    const CurvatureStencils& c = p.model.curvature;
+    for (std::size_t k = 0; k < c.size(); ++k) {
+        const Vec3 pull = c.stiffness[k] * bend_of(c, k, x);
+        for (std::uint32_t end = 0; end < c.count(k); ++end)
+            a[c.p[k][end]] -= c.w[end][k] / p.model.mass[c.p[k][end]] * pull;
+    }
     for (const PinnedGroup& group : p.model.pins) {
         for (const std::uint32_t q : group.particles) a[q].setZero();
     }

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "sim/terms/grid_tables.hpp"
 #include "tests/sim/scenes.hpp"
 
 using namespace unravel;
@@ -74,6 +75,28 @@ TEST_CASE("every spring of a grid stands where its stencil says, and there is no
     CHECK(stretch == model.springs.stretch_count);
     CHECK(stretch + shear == model.springs.size());
     CHECK(bend == model.bends.size());
+    std::uint32_t curved = 0;
+    for (const GridSprings& g : model.grids) {
+        for (std::size_t f = 0; f < curvature_stencils.size(); ++f) {
+            const SpringRows& rows = *curvature_rows(g)[f];
+            const GridStencil& stencil = curvature_stencils[f];
+            CHECK((rows.count() == 0 || rows.first == curved));
+            curved += rows.count();
+            for (std::uint32_t j = 0; j < rows.rows; ++j) {
+                for (std::uint32_t i = 0; i < rows.per_row; ++i) {
+                    const std::uint32_t s = rows.at(i, j);
+                    REQUIRE(model.curvature.count(s) == stencil.count);
+                    for (std::size_t k = 0; k < stencil.count; ++k) {
+                        const auto [column, down] = stencil.at[k];
+                        CHECK(model.curvature.p[s][k] == g.at((i + static_cast<std::uint32_t>(column)) % g.nu,
+                                                              j + static_cast<std::uint32_t>(down)));
+                        CHECK(model.curvature.w[k][s] == stencil.w[k]);
+                    }
+                }
+            }
+        }
+    }
+    CHECK(curved == model.curvature.size());
 }
 
 TEST_CASE("a stencil finds the springs of a particle that lists name, in the same order") {
@@ -100,13 +123,23 @@ TEST_CASE("a cloth that bends nowhere has no bend springs, one that bends somewh
     scene.cloths[0].material.bend = 0;
     Placement placement;
     CHECK(build_model(scene, placement).bends.size() == 0);
+    CHECK(build_model(scene, placement).curvature.size() == 0);
     Region region;
     region.box = {{0, 0}, {0.4, 1}};
     region.material = scene.cloths[0].material;
     region.material->bend = 1e-5;
     scene.cloths[0].regions.push_back(region);
+    const auto some = [](const Coefficients& stiffness) {
+        return std::ranges::min(stiffness.values()) == 0 && std::ranges::max(stiffness.values()) > 0;
+    };
+    scene.cloths[0].bend_model = BendModel::curvature;
+    const ClothModel curved = build_model(scene, placement);
+    CHECK(curved.curvature.size() == 2 * 6 * 4 + 5 * 5);
+    CHECK(curved.bends.size() == 2 * 6 * 5);
+    CHECK((some(curved.curvature.stiffness) && some(curved.bends.stiffness)));
+    scene.cloths[0].bend_model = BendModel::buckling;
     const ClothModel model = build_model(scene, placement);
+    CHECK(model.curvature.size() == 0);
     CHECK(model.bends.size() == 2 * 6 * 4 + 2 * 4 * 4);
-    CHECK(std::ranges::min(model.bends.stiffness.values()) == 0);
-    CHECK(std::ranges::max(model.bends.stiffness.values()) > 0);
+    CHECK(some(model.bends.stiffness));
 }

@@ -52,7 +52,7 @@ TEST_CASE("all problems of a scene are shown together, with line, caret and hint
 
 TEST_CASE("the caret stands under its character in long and in accented lines", "[scene]") {
     const auto shown = [](const std::string& line, int column) {
-        const std::string all = format_problems({{{1, column, 0}, "bad", ""}}, {"f", line, {}});
+        const std::string all = format_problems({{{1, column, 0}, "bad", ""}}, {"f", line, {}, {}});
         return all.substr(all.find('\n') + 1);
     };
     CHECK(shown("a = \"éé\" !", 10) == "    1 | a = \"éé\" !\n      |          ^\n1 problem in the scene");
@@ -66,7 +66,7 @@ TEST_CASE("the caret stands under its character in long and in accented lines", 
 
 TEST_CASE("thousands of problems do not flood the terminal", "[scene]") {
     const std::vector<SceneProblem> many(5000, {{1, 1, 0}, "bad", ""});
-    const std::string shown = format_problems(many, {"f", "x", {}});
+    const std::string shown = format_problems(many, {"f", "x", {}, {}});
     CHECK(shown.size() < 10000);
     CHECK_THAT(shown, Catch::Contains("and 4950 more problems"));
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <system_error>
 
+#include "sim/run/simulate.hpp"
 #include "sim/scene/limits.hpp"
 #include "sim/scene_file/presets.hpp"
 
@@ -66,6 +67,27 @@ TEST_CASE("the default step divides the frame and is at most 1/240 s", "[scene]"
         CHECK(scene.solver.step <= 1.0 / 240 * (1 + 1e-12));
         CHECK(scene.solver.step > 1.0 / 240 / 2 - 1e-12 - (fps > 240));
     }
+}
+
+TEST_CASE("rates of film and television are exact, and written as they were read", "[scene]") {
+    for (const int num : {24000, 30000, 60000}) {
+        const std::string rate = std::to_string(num) + "/1001";
+        INFO(rate);
+        const Scene scene = parse("[cloth]\n[clip]\nduration = 1001\nfps = \"" + rate + "\"\n");
+        CHECK(scene.clip.fps == Rate(num, 1001));
+        CHECK(scene.clip.frames() == num + 1);
+        // A frame at a whole second is due at exactly that: no error has been summed.
+        CHECK(scene.clip.fps.time_of(num) == 1001.0);
+        CHECK(steps_per_frame(scene) * scene.solver.step == Approx(1001.0 / num).epsilon(1e-15));
+        CHECK(scene.solver.step <= 1.0 / 240 * (1 + 1e-9));
+        const std::string written = scene_to_toml(scene);
+        CHECK(written.find("fps = \"" + rate + "\"") != std::string::npos);
+        CHECK(parse(written).clip.fps == scene.clip.fps);
+        const std::string step = step_text(scene.clip.fps, 12);
+        CHECK(steps_per_frame(parse("[cloth]\n[clip]\nfps = \"" + rate + "\"\n[solver]\nstep = \"" + step +
+                                    "\"\n")) == 12);
+    }
+    CHECK(parse("[cloth]\n[clip]\nfps = \"60/2\"\n").clip.fps == Rate(30));
 }
 
 TEST_CASE("a step may be a number or a fraction and is made to divide the frame exactly", "[scene]") {

@@ -80,7 +80,11 @@ TEST_CASE("the complete scene has every key there is, and every key is written",
     const Scene scene = load_scene(complete);
     CHECK(keys_of(scene.text) == known);
     // A run's folder holds copies of the files, and its scene names them from there.
-    known.erase("root");
+    // What is taken over from others, what is repeated, and a path's interpolation stand where they act.
+    for (const char* key :
+         {"root", "include", "cloth.count", "cloth.spacing", "cloth.mirror", "solid.count", "solid.spacing",
+          "solid.mirror", "solid.interpolation", "cloth.pin.interpolation"})
+        known.erase(key);
     CHECK(keys_of(scene_to_toml(scene)) == known);
 }
 
@@ -90,7 +94,7 @@ TEST_CASE("the complete scene's values arrive where they belong", "[scene]") {
         parse_scene(scene_to_toml(load_scene(complete)), "complete.toml", complete.parent_path());
     CHECK(scene.gravity == Vec3(0.5, -8.5, 0.25));
     CHECK(scene.clip.size == std::array{640, 360});
-    REQUIRE(scene.cloths.size() == 3);
+    REQUIRE(scene.cloths.size() == 10);
     const Cloth& cloth = scene.cloths[0];
     CHECK(cloth.name == "sheet");
     CHECK(cloth.density == 0.31);
@@ -117,7 +121,7 @@ TEST_CASE("the complete scene's values arrive where they belong", "[scene]") {
     CHECK(cloth.pins[2].motion[1].rotation == Vec3(0, 45, 0));
     CHECK(cloth.pins[5].disc.radius == 0.06);
     CHECK(scene.cloths[1].wrap == Wrap::tube);
-    REQUIRE(scene.solids.size() == 5);
+    REQUIRE(scene.solids.size() == 10);
     CHECK(scene.solids[3].frames.files == "tetra_##.obj");
     CHECK(scene.solids[3].frames.start == -0.5);
     CHECK(scene.solids[3].frames.loop);
@@ -134,6 +138,7 @@ TEST_CASE("the complete scene's values arrive where they belong", "[scene]") {
     CHECK(scene.solids[0].size == Vec3(0.6, 0.05, 0.7));
     CHECK(scene.solids[0].round == 0.01);
     CHECK(scene.solids[0].offset == 0.006);
+    CHECK(scene.solids[0].contact == ContactMethod::surface);
     CHECK(scene.solids[0].color == "#123abc");
     CHECK(scene.solids[0].pivot == Vec3(0, 0.5, 0));
     CHECK(scene.solids[1].pivot == Vec3(3, 0.625, 0));
@@ -147,6 +152,8 @@ TEST_CASE("the complete scene's values arrive where they belong", "[scene]") {
     CHECK(scene.wind->keyframes[1].velocity == Vec3(3, 0, 0));
     CHECK(scene.wind->gust->seed == 9);
     CHECK(scene.self_collision->stiffness == 70);
+    CHECK(scene.self_collision->method == ContactMethod::surface);
+    CHECK(scene.self_collision->friction.kinetic == 0.25);
     REQUIRE(scene.cameras.size() == 2);
     CHECK(scene.cameras[0].orbit == 30);
     CHECK(scene.cameras[1].keyframes[1].position == Vec3(2, 2, 3));
@@ -154,6 +161,35 @@ TEST_CASE("the complete scene's values arrive where they belong", "[scene]") {
     CHECK(scene.look.cloth[0].texture == "weave.png");
     CHECK(!scene.look.show_ground);
     CHECK(scene.look.ground_height == -0.25);
+    CHECK(scene.clip.settle == 0.5);
+    const Cloth& curtain = scene.cloths[3];
+    CHECK(curtain.facing == Facing::front);
+    CHECK(curtain.start->shape == StartShape::pleated);
+    CHECK(curtain.start->from == "u1");
+    CHECK(curtain.start->pleats == 3);
+    CHECK(curtain.start->width == 0.6);
+    CHECK(curtain.wrinkles->size == 0.3);
+    CHECK(curtain.wrinkles->seed == 3);
+    CHECK(curtain.pins[0].count == 4);
+    CHECK(curtain.pins[0].gather == 0.5);
+    CHECK(curtain.pins[0].gather_time == 0.4);
+    CHECK(curtain.pins[0].to == "table");
+    CHECK(curtain.pins[0].carried.by);
+    CHECK(curtain.pins[0].slide == Vec3(1, 0, 0));
+    CHECK(curtain.pins[0].motion[0].interpolation == Interpolation::ease);
+    CHECK(curtain.pins[0].motion[1].interpolation == Interpolation::linear);
+    CHECK(curtain.pins[1].rod == "rod");
+    CHECK(scene.cloths[7].center == Vec3(-8, 3, 0));
+    CHECK(scene.cloths[4].start->gap == 0.02);
+    CHECK(scene.cloths[5].start->flat == 0.2);
+    CHECK(scene.cloths[6].start->share == 0.4);
+    CHECK(scene.solids[5].parent == "table");
+    CHECK(scene.solids[5].motion[0].interpolation == Interpolation::linear);
+    CHECK(scene.solids[5].motion[1].interpolation == Interpolation::hold);
+    CHECK(scene.solids[6].fall->floor == 0.5);
+    CHECK(scene.solids[6].fall->give == 0.1);
+    CHECK(scene.solids[9].name == "rod mirrored");
+    CHECK(scene.cameras[1].interpolation == Interpolation::hold);
 }
 
 TEST_CASE("names with quotes, backslashes and accents survive writing", "[scene]") {

@@ -161,10 +161,12 @@ TEST_CASE("Eigen solves the captured system to what we solve it to", "[bench]") 
     const PeerSolve exact = solve_by_eigen_ldlt(folded);
     CHECK(folded.residual(exact.y) < 1e-11);
     for (const Preconditioner kind :
+         // The solver measures by S b, the folded system by S (b - A z): what contacts prescribe makes a few
+         // hundredths of difference.
          {Preconditioner::automatic, Preconditioner::multigrid, Preconditioner::stencil_block,
           Preconditioner::constrained_block, Preconditioner::none}) {
         problem.solve({kind, 1e-3, 2000}, 1);
-        CHECK(folded.residual(folded.unknowns(problem.solution())) <= 1.001e-3);
+        CHECK(folded.residual(folded.unknowns(problem.solution())) <= 1.1e-3);
     }
     problem.solve({Preconditioner::constrained_block, 1e-10, 2000}, 1);
     const Eigen::VectorXd ours = folded.unknowns(problem.solution());

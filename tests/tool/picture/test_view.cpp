@@ -74,6 +74,27 @@ TEST_CASE("the_camera_passes_through_its_keyframes_without_a_jerk") {
     CHECK(camera_at(scene, camera, 9).position == camera_at(scene, camera, 1.5).position);
 }
 
+TEST_CASE("a_camera_goes_along_with_what_it_follows") {
+    Scene scene = testing::drape(5);
+    Simulation simulation = start_simulation(scene);
+    Placement placement;
+    build_model(scene, placement);
+    const DrawScene drawn = make_draw_scene(scene, simulation.model, placement);
+    Camera& camera = scene.cameras[0];
+    const CameraView still = camera_at(scene, camera, 0);
+    camera.follow = "sphere";
+    scene.solids[0].motion = {{0, {0, 0, 0}, {0, 0, 0}}, {1, {2, 0, 1}, {0, 90, 0}}};
+    const CameraView ball = camera_at(scene, camera, 1);
+    CHECK((ball.position - still.position - Vec3f(2, 0, 1)).norm() < 1e-5f);
+    CHECK((ball.target - still.target - Vec3f(2, 0, 1)).norm() < 1e-5f);
+    camera.follow = "sheet";
+    std::vector<Vec3f> positions;
+    for (const Vec3& x : placement.x) positions.push_back((x + Vec3(0.5, -1, 0)).cast<float>());
+    const CameraView sheet = camera_of_frame(scene, camera, 1, simulation.model, positions, drawn);
+    CHECK((sheet.position - still.position - Vec3f(0.5f, -1, 0)).norm() < 1e-5f);
+    CHECK((sheet.target - still.target - Vec3f(0.5f, -1, 0)).norm() < 1e-5f);
+}
+
 TEST_CASE("exposures_lie_where_the_cloth_was_while_the_shutter_was_open") {
     Scene scene = testing::drape(5);
     scene.look.motion_blur = 4;
@@ -90,18 +111,18 @@ TEST_CASE("exposures_lie_where_the_cloth_was_while_the_shutter_was_open") {
     }
     std::vector<DrawFrame> exposures;
     const std::vector<Rgb> colors(before.state.x.size());
-    make_exposures(scene, simulation.model, now, &before.state, colors, exposures);
+    make_exposures(scene, simulation.model, now, &before.state, colors, 4, exposures);
     REQUIRE(exposures.size() == 4);
-    const std::vector<double> times = exposure_times(scene, 1);
+    const std::vector<double> times = exposure_times(scene, 1, 4);
     for (std::size_t e = 0; e < 4; ++e) {
         CHECK(times[e] == Approx(0.02 + 0.005 * (e + 0.5)));
         CHECK(exposures[e].positions[7].y() ==
               Approx(before.state.x[7].y() - 0.5 * 9.81 * times[e] * times[e]).margin(1e-6));
     }
-    make_exposures(scene, simulation.model, before, nullptr, colors, exposures);
+    make_exposures(scene, simulation.model, before, nullptr, colors, 4, exposures);
     CHECK(exposures.size() == 1);
     // A frame that stands still has sharp exposures.
-    make_exposures(scene, simulation.model, now, &now.state, colors, exposures);
+    make_exposures(scene, simulation.model, now, &now.state, colors, 4, exposures);
     CHECK(exposures[0].positions == exposures[3].positions);
 }
 

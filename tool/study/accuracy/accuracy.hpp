@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sim/model/model.hpp"
 #include "sim/scene/math.hpp"
 #include "sim/scene/scene.hpp"
 #include "tool/base/names.hpp"
@@ -47,10 +49,22 @@ struct AccuracyPoint {
 /// As the scene file has it.
 const char* integrator_name(Integrator integrator);
 
-/// Positions at frames 1, 2, … of a window that starts with the scene. (frames) × (particles) [m]
+/// The scene's own solver as a setting.
+AccuracySetting scene_setting(const Scene& scene);
+
+/// Frames of the clip over which settings are compared: from `first` to `last`, or as far as references
+/// agree.
+struct AccuracyWindow {
+    int first = 0;
+    std::optional<int> last;  ///< absent: chosen
+};
+
+/// Positions at the frames after a window's first. (frames) × (particles) [m]
 using Trajectory = std::vector<std::vector<Vec3>>;
 
-/// Runs a setting over the frames of `reference`, or over `frames` of them where that is empty.
+/// Runs a setting over `frames` frames from a start that all settings share, or from the scene's own where it
+/// is empty.
+///   t0       s, when that is
 ///   keep_on  asked after each frame; false ends the run, which then counts as broken
 struct AccuracyRun {
     AccuracyPoint point;  ///< with one time
@@ -58,7 +72,7 @@ struct AccuracyRun {
     bool stopped = false;
 };
 AccuracyRun run_setting(const Scene& scene, const AccuracySetting& setting, int frames,
-                        const std::function<bool()>& keep_on);
+                        const std::function<bool()>& keep_on, const Placement& start = {}, double t0 = 0);
 
 /// RMS distance of two trajectories over the frames that both have, over the cloth's diagonal.
 double distance(const Trajectory& a, const Trajectory& b, double diagonal);
@@ -70,9 +84,12 @@ double diagonal_of(const Scene& scene);
 /// that says how far it can be trusted.
 struct AccuracyReference {
     AccuracySetting first, second;
+    int first_frame = 0;  ///< at which the window starts
+    int asked = 0;        ///< frames that it was asked for; 0: it was to choose
+    Placement start;      ///< where everything is and goes then, by the scene's own solver
     Trajectory trajectory;
     double floor = 0;  ///< their distance
-    int frames = 0;    ///< of the window: until the two part by more than `parted`, or the scene ends
+    int frames = 0;  ///< of the window: as asked for, until the two part by more than `parted`, or time ends
 };
 
 /// Where two references part by more than this share of the diagonal, trajectories are no longer comparable.
@@ -83,15 +100,18 @@ inline constexpr double least_window = 0.2;
 /// A reference takes at most so many steps a frame.
 inline constexpr int finest_reference = 4096;
 
-/// Computes it, spending about `seconds`.
-AccuracyReference make_reference(const Scene& scene, double seconds, const std::function<bool()>& keep_on);
+/// Computes it in at most about `seconds`: with as small steps as fit, and where even coarse ones don't, over
+/// as many frames as fit, one at least.
+AccuracyReference make_reference(const Scene& scene, const AccuracyWindow& window, double seconds,
+                                 const std::function<bool()>& keep_on);
 
 /// The reference as a file's bytes, and back. Throws InputError if the bytes are no reference of `particles`.
 std::string reference_bytes(const AccuracyReference& reference);
 AccuracyReference read_reference(const std::filesystem::path& file, std::size_t particles);
 
-/// The settings of a study, those that matter most first; within a method from large steps to small.
-std::vector<AccuracySetting> accuracy_grid(const AccuracyReference& reference);
+/// The settings of a study: the scene's own, then those that matter most; within a method from large steps to
+/// small.
+std::vector<AccuracySetting> accuracy_grid(const AccuracyReference& reference, const Scene& scene);
 
 /// The CSV with every point, and back. Rows that do not parse are left out.
 std::string accuracy_csv(const std::vector<AccuracyPoint>& points);

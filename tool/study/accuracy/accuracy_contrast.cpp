@@ -182,14 +182,14 @@ std::string explicit_words(const AccuracyStudy& study) {
     if (!curve) return "explicit was not tried";
     const auto stable = std::find_if(curve->points.begin(), curve->points.end(),
                                      [](const AccuracyPoint* p) { return !p->broke; });
-    const int fps = study.scene.clip.fps;
+    const Rate& fps = study.scene.clip.fps;
     if (stable == curve->points.end())
-        return fmt::format("explicit blew up at every step tried, down to 1/{} s",
-                           curve->points.back()->setting.steps_per_frame * fps);
+        return fmt::format("explicit blew up at every step tried, down to {} s",
+                           step_text(fps, curve->points.back()->setting.steps_per_frame));
     const AccuracyPoint& p = **stable;
     std::string text =
-        fmt::format("explicit is stable from steps of 1/{} s on, with an error of {:.1g} at once",
-                    p.setting.steps_per_frame * fps, p.error);
+        fmt::format("explicit is stable from steps of {} s on, with an error of {:.1g} at once",
+                    step_text(fps, p.setting.steps_per_frame), p.error);
     std::vector<Plain> others;
     for (const Plain& plain : curves) {
         if (plain.integrator != Integrator::explicit_) others.push_back(plain);

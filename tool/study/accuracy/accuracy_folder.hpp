@@ -16,7 +16,7 @@ struct AccuracyStudy {
     std::vector<AccuracyPoint> points;
     int skipped = 0;       ///< settings that did not fit the budget
     bool stopped = false;  ///< by keep_on
-    double window() const { return static_cast<double>(reference.frames) / scene.clip.fps; }  ///< s
+    double window() const { return scene.clip.fps.time_of(reference.frames); }  ///< s
     const AccuracyPoint* find(const AccuracySetting& setting) const;  ///< null: not among the points
 };
 
@@ -31,6 +31,11 @@ public:
     AccuracyStudy read() const;
     /// Makes the folder this scene's: what a study of another has left is removed.
     void begin() const;
+    /// Begins anew: what it holds is of another window.
+    void forget() {
+        holds_study_ = false;
+        begin();
+    }
     void save_reference(const AccuracyReference& reference) const;
     void save_points(const std::vector<AccuracyPoint>& points) const;  ///< all, in accuracy.csv
     void save_point(const AccuracyPoint& point) const;                 ///< one, in its own file

@@ -109,9 +109,9 @@ bool AccuracySetting::plain() const {
            activation == common.activation && band == common.band && bend == common.bend;
 }
 
-std::vector<AccuracySetting> accuracy_grid(const AccuracyReference& reference) {
+std::vector<AccuracySetting> accuracy_grid(const AccuracyReference& reference, const Scene& scene) {
     const int finest = reference.first.steps_per_frame;
-    std::vector<AccuracySetting> grid;
+    std::vector<AccuracySetting> grid{scene_setting(scene)};
     const auto variant = [](Integrator integrator, const auto& change) {
         AccuracySetting setting = common;
         setting.integrator = integrator;

@@ -73,7 +73,7 @@ void name_the_broken(Plot& plot) {
 }  // namespace
 
 Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyReference& reference,
-                   const std::string& scene, double seconds_simulated, int fps, CostAxis axis) {
+                   const std::string& scene, double seconds_simulated, const Rate& fps, CostAxis axis) {
     Plot plot;
     plot.title = fmt::format("What accuracy costs: {} (lower: more accurate; further left: cheaper)", scene);
     plot.x.label = axis == CostAxis::time ? "computing time for a second simulated [s]"
@@ -112,7 +112,7 @@ Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyRefer
             // Bars of points without a line would bury those with one.
             if (!setting.plain()) same->points.back().left = same->points.back().right = nothing;
             if (setting.plain() && best_of_front(*p, front))
-                same->points.back().note = fmt::format("1/{} s", p->setting.steps_per_frame * fps);
+                same->points.back().note = step_text(fps, p->setting.steps_per_frame) + " s";
         }
     }
     // Behind the lines, and last in the legend but for the front.
@@ -141,7 +141,7 @@ Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyRefer
 }
 
 std::string accuracy_page(const std::vector<AccuracyPoint>& points, const AccuracyReference& reference,
-                          const std::string& scene, double seconds_simulated, int fps, double error) {
+                          const std::string& scene, double seconds_simulated, const Rate& fps, double error) {
     return fmt::format(
         "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Accuracy of {0}</title>\n"
         "<style>body{{font:15px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}}"
@@ -154,7 +154,7 @@ std::string accuracy_page(const std::vector<AccuracyPoint>& points, const Accura
         "frame; auto divides its steps where it takes explicit ones); steps are named where no other run "
         "beats the "
         "point in both. Crosses at the upper edge are runs that blew up. The reference is {4} at steps of "
-        "1/{5} s and a tolerance of {6:.0e}; {7} at steps of 1/{8} s differs from it by {9:.2e}: nothing "
+        "{5} s and a tolerance of {6:.0e}; {7} at steps of {8} s differs from it by {9:.2e}: nothing "
         "below "
         "that line can be told apart. Lines hold a threshold of 0.2, a tolerance of 1e-3 and no activation "
         "band; grey points "
@@ -163,9 +163,9 @@ std::string accuracy_page(const std::vector<AccuracyPoint>& points, const Accura
         "<pre>{11}</pre></html>\n",
         escaped(scene), escaped(recommendation(points, error, seconds_simulated, fps)),
         inlined(plot_svg(accuracy_plot(points, reference, scene, seconds_simulated, fps, CostAxis::time))),
-        seconds_simulated, reference.first.method(), reference.first.steps_per_frame * fps,
-        reference.first.tolerance, reference.second.method(), reference.second.steps_per_frame * fps,
-        reference.floor,
+        seconds_simulated, reference.first.method(), step_text(fps, reference.first.steps_per_frame),
+        reference.first.tolerance, reference.second.method(),
+        step_text(fps, reference.second.steps_per_frame), reference.floor,
         inlined(plot_svg(accuracy_plot(points, reference, scene, seconds_simulated, fps, CostAxis::rvm))),
         escaped(accuracy_table(points, reference, error, fps)));
 }

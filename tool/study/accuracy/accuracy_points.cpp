@@ -31,7 +31,7 @@ bool time_accuracy_point(const Scene& scene, const std::filesystem::path& path, 
                          const std::function<bool()>& keep_on) {
     const AccuracyFolder folder(scene, path, false);
     const AccuracyStudy study = study_with_reference(folder);
-    const std::vector<AccuracySetting> grid = accuracy_grid(study.reference);
+    const std::vector<AccuracySetting> grid = accuracy_grid(study.reference, scene);
     // Before the reference is known, more points are sent than it may turn out to allow.
     if (static_cast<std::size_t>(index) >= grid.size()) return true;
     const AccuracySetting& setting = grid[static_cast<std::size_t>(index)];
@@ -50,15 +50,15 @@ bool time_accuracy_point(const Scene& scene, const std::filesystem::path& path, 
 AccuracyStudy collect_accuracy(const Scene& scene, const std::filesystem::path& path, std::string& missing) {
     const AccuracyFolder folder(scene, path, false);
     AccuracyStudy study = study_with_reference(folder);
-    const std::vector<AccuracySetting> grid = accuracy_grid(study.reference);
+    const std::vector<AccuracySetting> grid = accuracy_grid(study.reference, scene);
     const auto place = [&](const AccuracyPoint& p) { return std::find(grid.begin(), grid.end(), p.setting); };
     std::stable_sort(study.points.begin(), study.points.end(),
                      [&](const auto& a, const auto& b) { return place(a) < place(b); });
     folder.save_points(study.points);
     for (std::size_t k = 0; k < grid.size(); ++k) {
         if (!study.find(grid[k]))
-            missing += fmt::format("\n  {}, steps of 1/{} s: {}", grid[k].method(),
-                                   grid[k].steps_per_frame * scene.clip.fps,
+            missing += fmt::format("\n  {}, steps of {} s: {}", grid[k].method(),
+                                   step_text(scene.clip.fps, grid[k].steps_per_frame),
                                    why_missing(path, "accuracy", static_cast<int>(k)));
     }
     return study;
@@ -69,7 +69,7 @@ ClusterWork accuracy_cluster_work(const Scene& scene, const std::filesystem::pat
     AccuracyStudy study;
     study.reference.first.steps_per_frame = finest_reference;
     if (folder.holds_study()) study = folder.read();
-    const std::vector<AccuracySetting> grid = accuracy_grid(study.reference);
+    const std::vector<AccuracySetting> grid = accuracy_grid(study.reference, scene);
     ClusterWork work;
     work.name = "accuracy";
     work.what =

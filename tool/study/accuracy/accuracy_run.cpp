@@ -6,6 +6,7 @@
 #include "base/whole_file.hpp"
 #include "sim/run/simulate.hpp"
 #include "sim/step/explicit_limit.hpp"
+#include "tool/base/interrupt.hpp"
 #include "tool/study/accuracy/accuracy.hpp"
 
 namespace unravel::tool {
@@ -16,6 +17,8 @@ namespace {
 constexpr double far_out = 100;
 // A run that explicit springs bring nearer to their limit of stability than this is no reference.
 constexpr double safe_share = 0.5;
+// Steps a frame by which a reference's cost is foretold, and the fewest of one.
+constexpr int probe_steps = 32, coarsest_reference = 32;
 // So many times as many steps as the first reference takes an explicit one at most.
 constexpr int finer_explicit = 16;
 
@@ -42,8 +45,9 @@ int comparable_frames(const Trajectory& a, const Trajectory& b, double diagonal,
 
 // What precedes the positions in a reference's file.
 struct ReferenceHeader {
-    char kind[8] = {'u', 'n', 'r', 'e', 'f', '0', '0', '3'};
+    char kind[8] = {'u', 'n', 'r', 'e', 'f', '0', '0', '4'};
     std::int32_t steps_per_frame = 0, frames = 0;
+    std::int32_t first_frame = 0, asked = 0;
     std::int32_t second_is_explicit = 1, second_steps_per_frame = 0;
     std::uint64_t particles = 0;
     double floor = 0;
@@ -58,6 +62,14 @@ AccuracySetting reference_setting(Integrator integrator, int steps_per_frame) {
     return setting;
 }
 
+// Where the scene's own solver has the cloth at a frame. Throws SimulationError.
+Placement placement_at(const Scene& scene, int frame) {
+    Simulation simulation = start_simulation(scene);
+    settle(simulation);
+    for (int k = 0; k < frame; ++k) next_record(simulation);
+    return {simulation.state.x, simulation.state.v};
+}
+
 double seconds_a_step(const AccuracyRun& run) {
     return run.point.median() / std::max<double>(1, static_cast<double>(run.point.steps));
 }
@@ -65,20 +77,22 @@ double seconds_a_step(const AccuracyRun& run) {
 // The scheme that shares least with the first, of those that bear the step. Explicit steps are of first order
 // where the first reference is of second, and cheap: as many as take the time that a step of the first does
 // [s].
-AccuracySetting second_reference(const Scene& scene, int steps_per_frame, double seconds,
+AccuracySetting second_reference(const Scene& scene, const AccuracyReference& reference, double seconds,
                                  const std::function<bool()>& keep_on) {
+    const int steps_per_frame = reference.first.steps_per_frame;
     StepOptions options = step_options(scene.solver);
     options.integrator = Integrator::explicit_;
     Placement placement;
     const ClothModel model = build_model(scene, placement);
     int finer = 1;
     while (finer <= finer_explicit &&
-           !(explicit_limit(model, options, 1.0 / (scene.clip.fps * steps_per_frame * finer)).share <
-             safe_share))
+           !(explicit_limit(model, options, 1.0 / (scene.clip.fps.per_second() * steps_per_frame * finer))
+                 .share < safe_share))
         finer *= 2;
     if (finer > finer_explicit) return reference_setting(Integrator::bdf2, steps_per_frame);
     const double each = seconds_a_step(
-        run_setting(scene, reference_setting(Integrator::explicit_, finer * steps_per_frame), 1, keep_on));
+        run_setting(scene, reference_setting(Integrator::explicit_, finer * steps_per_frame), 1, keep_on,
+                    reference.start, scene.clip.fps.time_of(reference.first_frame)));
     while (finer < finer_explicit && 2 * finer * each < seconds) finer *= 2;
     return reference_setting(Integrator::explicit_, finer * steps_per_frame);
 }
@@ -119,13 +133,13 @@ double distance(const Trajectory& a, const Trajectory& b, double diagonal) {
 }
 
 AccuracyRun run_setting(const Scene& scene, const AccuracySetting& setting, int frames,
-                        const std::function<bool()>& keep_on) {
+                        const std::function<bool()>& keep_on, const Placement& start, double t0) {
     Scene variant = scene;
     variant.solver.integrator = setting.integrator;
     // Explicit steps in one go, as fast as they can be: a step a frame, in parts.
     const bool in_parts = setting.integrator == Integrator::explicit_;
     const int steps = in_parts ? 1 : setting.steps_per_frame;
-    variant.solver.step = 1.0 / (scene.clip.fps * steps);
+    variant.solver.step = 1.0 / (scene.clip.fps.per_second() * steps);
     variant.solver.substeps = in_parts ? setting.steps_per_frame : 1;
     variant.solver.threshold = setting.threshold;
     variant.solver.tolerance = setting.tolerance;
@@ -134,6 +148,11 @@ AccuracyRun run_setting(const Scene& scene, const AccuracySetting& setting, int 
     variant.solver.bend = setting.bend;
     variant.solver.adaptive.reset();
     Simulation simulation = start_simulation(variant);
+    if (!start.x.empty()) {
+        simulation.state = initial_state(start);
+        simulation.state.t = t0;
+    }
+    simulation.options.solve.stop = InterruptWatch::flag();
     const double limit = far_out * diagonal_of(scene);
 
     AccuracyRun run;
@@ -167,29 +186,62 @@ AccuracyRun run_setting(const Scene& scene, const AccuracySetting& setting, int 
         }
     } catch (const SimulationError&) {
         run.point.broke = true;
+    } catch (const Stopped&) {
+        run.stopped = true;
+        return run;
     }
     run.point.seconds = {seconds};
     return run;
 }
 
-AccuracyReference make_reference(const Scene& scene, double seconds, const std::function<bool()>& keep_on) {
+AccuracySetting scene_setting(const Scene& scene) {
+    AccuracySetting setting;
+    const Solver& solver = scene.solver;
+    setting.integrator = solver.integrator;
+    const bool in_parts = solver.integrator == Integrator::explicit_;
+    setting.steps_per_frame = steps_per_frame(scene) * (in_parts ? std::max(1, solver.substeps) : 1);
+    setting.threshold = solver.threshold;
+    setting.tolerance = solver.tolerance;
+    setting.activation = solver.activation;
+    setting.band = solver.activation_band;
+    setting.bend = solver.bend;
+    return setting;
+}
+
+AccuracyReference make_reference(const Scene& scene, const AccuracyWindow& window, double seconds,
+                                 const std::function<bool()>& keep_on) {
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    const auto left = [&] { return seconds - std::chrono::duration<double>(Clock::now() - begin).count(); };
     AccuracyReference reference;
-    const int all = scene.clip.frames() - 1;
+    reference.first_frame = window.first;
+    reference.asked = window.last ? *window.last - window.first : 0;
+    reference.start = placement_at(scene, window.first);
+    const double t0 = scene.clip.fps.time_of(window.first);
+    const double fps = scene.clip.fps.per_second();
+    const int all = scene.clip.frames() - 1 - window.first;
+    const int wanted =
+        window.last ? *window.last - window.first : std::min(all, std::max(1, static_cast<int>(fps / 2)));
+    // One frame is always taken: without it there is nothing to compare.
+    const auto run_until = [&](const AccuracySetting& setting, int frames, double least_left) {
+        int taken = 0;
+        return run_setting(
+            scene, setting, frames, [&] { return keep_on() && (taken++ == 0 || left() > least_left); },
+            reference.start, t0);
+    };
     // An eighth of a second by moderate steps tells what a step costs.
-    const int probe_frames = std::max(1, scene.clip.fps / 8);
-    const AccuracyRun probe = run_setting(scene, reference_setting(Integrator::adaptive_imex2, 64),
-                                          std::min(all, probe_frames), keep_on);
-    const double per_step = seconds_a_step(probe);
-    const int wanted = std::min(all, std::max(1, scene.clip.fps / 2));
-    int steps = 256;
-    while (steps < finest_reference && 2 * (2.0 * steps) * wanted * per_step < seconds) steps *= 2;
+    const double per_step =
+        seconds_a_step(run_until(reference_setting(Integrator::adaptive_imex2, probe_steps),
+                                 std::min(wanted, std::max(1, static_cast<int>(fps / 8))), 0.75 * seconds));
+    int steps = coarsest_reference;
+    while (steps < finest_reference && 2 * (2.0 * steps) * wanted * per_step < left()) steps *= 2;
 
     reference.first = reference_setting(Integrator::adaptive_imex2, steps);
-    reference.second = second_reference(scene, steps, per_step, keep_on);
-    AccuracyRun first = run_setting(scene, reference.first, wanted, keep_on);
-    const AccuracyRun other = run_setting(scene, reference.second, wanted, keep_on);
+    reference.second = second_reference(scene, reference, per_step, keep_on);
+    AccuracyRun first = run_until(reference.first, wanted, 0.5 * left());
+    const AccuracyRun other = run_until(reference.second, wanted, 0);
     const double diagonal = diagonal_of(scene);
-    const int least = static_cast<int>(std::ceil(least_window * scene.clip.fps));
+    const int least = window.last ? wanted : static_cast<int>(std::ceil(least_window * fps));
     reference.frames = comparable_frames(first.trajectory, other.trajectory, diagonal, least);
     reference.trajectory = std::move(first.trajectory);
     reference.trajectory.resize(static_cast<std::size_t>(reference.frames));
@@ -201,11 +253,15 @@ std::string reference_bytes(const AccuracyReference& reference) {
     ReferenceHeader header;
     header.steps_per_frame = reference.first.steps_per_frame;
     header.frames = reference.frames;
+    header.first_frame = reference.first_frame;
+    header.asked = reference.asked;
     header.particles = reference.trajectory.empty() ? 0 : reference.trajectory.front().size();
     header.second_is_explicit = reference.second.integrator == Integrator::explicit_;
     header.second_steps_per_frame = reference.second.steps_per_frame;
     header.floor = reference.floor;
     std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
+    for (const std::vector<Vec3>* part : {&reference.start.x, &reference.start.v})
+        bytes.append(reinterpret_cast<const char*>(part->data()), part->size() * sizeof(Vec3));
     for (const std::vector<Vec3>& x : reference.trajectory)
         bytes.append(reinterpret_cast<const char*>(x.data()), x.size() * sizeof(Vec3));
     return bytes;
@@ -220,7 +276,7 @@ AccuracyReference read_reference(const std::filesystem::path& file, std::size_t 
     if (bytes.size() < sizeof header || std::memcmp(header.kind, expected.kind, sizeof header.kind) != 0 ||
         header.particles != particles || header.frames < 0 || header.steps_per_frame < 1 ||
         header.second_steps_per_frame < 1 ||
-        bytes.size() != sizeof header + static_cast<std::size_t>(header.frames) * frame_bytes) {
+        bytes.size() != sizeof header + static_cast<std::size_t>(header.frames + 2) * frame_bytes) {
         throw InputError(file, "is no reference of this scene; --force makes a new one");
     }
     AccuracyReference reference;
@@ -230,11 +286,16 @@ AccuracyReference read_reference(const std::filesystem::path& file, std::size_t 
                           header.second_steps_per_frame);
     reference.frames = header.frames;
     reference.floor = header.floor;
-    for (int k = 0; k < header.frames; ++k) {
-        reference.trajectory.emplace_back(particles);
-        std::memcpy(static_cast<void*>(reference.trajectory.back().data()),
-                    bytes.data() + sizeof header + static_cast<std::size_t>(k) * frame_bytes, frame_bytes);
-    }
+    reference.first_frame = header.first_frame;
+    reference.asked = header.asked;
+    auto take = [&, at = sizeof header](std::vector<Vec3>& out) mutable {
+        out.resize(particles);
+        std::memcpy(static_cast<void*>(out.data()), bytes.data() + at, frame_bytes);
+        at += frame_bytes;
+    };
+    take(reference.start.x);
+    take(reference.start.v);
+    for (int k = 0; k < header.frames; ++k) take(reference.trajectory.emplace_back());
     return reference;
 }
 

@@ -11,7 +11,9 @@ struct AccuracyBudget {
     double seconds = 600;  ///< for everything
     bool force = false;    ///< forget what an earlier study left in the folder
     bool quiet = false;
-    double after = 0;  ///< s, what is to follow and counts as time left
+    double after = 0;         ///< s, what is to follow and counts as time left
+    double error = 1e-3;      ///< to be borne: a method is not refined beyond it
+    AccuracyWindow window{};  ///< of the clip
 };
 
 /// Times of a point on one machine: so many make its median.

@@ -15,15 +15,15 @@ namespace {
 // Errors nearer to the floor than this are the references' doubt as much as the method's error.
 constexpr double clear_of_floor = 3;
 
-std::string step_text(const AccuracySetting& s, int fps) {
-    return fmt::format("1/{} s", s.steps_per_frame * fps);
+std::string step_text(const AccuracySetting& s, const Rate& fps) {
+    return step_text(fps, s.steps_per_frame) + " s";
 }
 
 // What to write into the scene.
-std::string how_to(const AccuracySetting& s, int fps) {
+std::string how_to(const AccuracySetting& s, const Rate& fps) {
     if (s.integrator == Integrator::explicit_)
-        return fmt::format("explicit with {} substeps of {} (solver.step = \"1/{}\", solver.substeps = {})",
-                           s.steps_per_frame, step_text(s, fps), fps, s.steps_per_frame);
+        return fmt::format("explicit with {} substeps of {} (solver.step = \"{}\", solver.substeps = {})",
+                           s.steps_per_frame, step_text(s, fps), step_text(fps, 1), s.steps_per_frame);
     return fmt::format("{} with steps of {} and solver.activation_band = {}", s.method(), step_text(s, fps),
                        s.band);
 }
@@ -119,7 +119,7 @@ std::optional<double> seconds_at(const AccuracyCurve& curve, double error) {
 }
 
 std::string recommendation(const std::vector<AccuracyPoint>& points, double error, double seconds_simulated,
-                           int fps) {
+                           const Rate& fps) {
     const AccuracyPoint* best = cheapest_within(points, error, nullptr);
     if (!best) {
         const std::vector<const AccuracyPoint*> front = pareto_front(points);
@@ -148,7 +148,7 @@ std::string recommendation(const std::vector<AccuracyPoint>& points, double erro
 }
 
 std::string accuracy_table(const std::vector<AccuracyPoint>& points, const AccuracyReference& reference,
-                           double error, int fps) {
+                           double error, const Rate& fps) {
     std::string text = fmt::format("{:<36} {:>8} {:>10} {:>9} {:>9} {:>15} {:>4} {:>9}\n", "method", "step",
                                    "error", "order", "seconds", "(spread)", "runs", "RVM");
     const std::vector<const AccuracyPoint*> front = pareto_front(points);
@@ -158,7 +158,7 @@ std::string accuracy_table(const std::vector<AccuracyPoint>& points, const Accur
                        best = std::find(front.begin(), front.end(), p) != front.end();
             text += fmt::format("{:<36} {:>8} {:>10} {:>9} {:>9.3f} {:>15} {:>4} {:>9.2e}{}\n",
                                 p == curve.points.front() ? curve.method : "",
-                                fmt::format("1/{}", p->setting.steps_per_frame * fps),
+                                step_text(fps, p->setting.steps_per_frame),
                                 p->broke ? "broke" : fmt::format("{:.2e}", p->error),
                                 last && curve.order ? fmt::format("{:.2f}", *curve.order) : "", p->median(),
                                 fmt::format("{:.3f}-{:.3f}", p->fastest(), p->slowest()), p->seconds.size(),

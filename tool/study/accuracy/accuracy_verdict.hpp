@@ -38,17 +38,17 @@ std::optional<double> seconds_at(const AccuracyCurve& curve, double error);
 
 /// The study in a table and a sentence or two.
 std::string accuracy_table(const std::vector<AccuracyPoint>& points, const AccuracyReference& reference,
-                           double error, int fps);
+                           double error, const Rate& fps);
 std::string recommendation(const std::vector<AccuracyPoint>& points, double error, double seconds_simulated,
-                           int fps);
+                           const Rate& fps);
 
 /// Error over time, or over RVMs.
 enum class CostAxis { time, rvm };
 Plot accuracy_plot(const std::vector<AccuracyPoint>& points, const AccuracyReference& reference,
-                   const std::string& scene, double seconds_simulated, int fps, CostAxis axis);
+                   const std::string& scene, double seconds_simulated, const Rate& fps, CostAxis axis);
 
 /// The page: plots within it, table, sentence.
 std::string accuracy_page(const std::vector<AccuracyPoint>& points, const AccuracyReference& reference,
-                          const std::string& scene, double seconds_simulated, int fps, double error);
+                          const std::string& scene, double seconds_simulated, const Rate& fps, double error);
 
 }  // namespace unravel::tool

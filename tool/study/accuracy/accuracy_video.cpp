@@ -76,7 +76,8 @@ void write_accuracy_video(const Scene& studied, const AccuracySide& cheap, const
     VideoSettings settings;
     settings.width = 2 * side_width;
     settings.height = caption_height + side_height + scale_height;
-    settings.fps_num = scene.clip.fps;
+    settings.fps_num = scene.clip.fps.num;
+    settings.fps_den = scene.clip.fps.den;
     VideoWriter video(file, settings);
 
     const double worst = worst_distance(cheap.trajectory, accurate.trajectory);
@@ -87,7 +88,7 @@ void write_accuracy_video(const Scene& studied, const AccuracySide& cheap, const
     std::array<Image, 2> pictures;
     const auto frames = std::min(cheap.trajectory.size(), accurate.trajectory.size());
     for (std::size_t k = 0; k <= frames && keep_on(); ++k) {
-        const double t = static_cast<double>(k) / scene.clip.fps;
+        const double t = scene.clip.fps.time_of(static_cast<int>(k));
         const std::vector<Vec3>& exact = k == 0 ? placement.x : accurate.trajectory[k - 1];
         const std::vector<Vec3>& near = k == 0 ? placement.x : cheap.trajectory[k - 1];
         record.frame = static_cast<int>(k);
@@ -96,7 +97,7 @@ void write_accuracy_video(const Scene& studied, const AccuracySide& cheap, const
             record.state.x = side == 0 ? near : exact;
             for (std::size_t p = 0; p < model.size(); ++p)
                 colors[p] = side == 0 ? heat_color((near[p] - exact[p]).norm(), worst) : exact_color;
-            make_draw_frame(scene, model, record, colors, frame);
+            make_draw_frame(scene, model, drawn, record, colors, frame);
             renderer.draw(DrawStyle::components, frame, pictures[static_cast<std::size_t>(side)]);
         }
         const Image picture = canvas_image(settings.width, settings.height, 1, [&](Canvas& canvas) {
@@ -113,7 +114,8 @@ void write_accuracy_video(const Scene& studied, const AccuracySide& cheap, const
             draw_scale(canvas, worst, caption_height + side_height, settings.width);
         });
         video.add(picture);
-        for (int still = 0; k == frames && still < scene.clip.fps / 2; ++still) video.add(picture);
+        for (int still = 0; k == frames && 2 * still < scene.clip.fps.per_second(); ++still)
+            video.add(picture);
     }
     if (video.frames() > 0) video.finish();
 }

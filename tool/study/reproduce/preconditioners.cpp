@@ -32,7 +32,7 @@ struct Iterations {
 
 Iterations measure(const Scene& scene, double from, int systems) {
     Simulation simulation = start_simulation(scene);
-    const int first = static_cast<int>(std::lround(from * scene.clip.fps));
+    const int first = static_cast<int>(std::lround(from * scene.clip.fps.per_second()));
     Iterations out;
     out.particles = static_cast<double>(simulation.model.size());
     int taken = 0;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "sim/constraints/pins.hpp"
 #include "sim/run/simulate.hpp"
 #include "sim/scene_file/load.hpp"
 #include "sim/solids/sdf.hpp"
@@ -49,9 +50,11 @@ double pin_error(const ClothModel& model, const ClothState& state) {
     double error = 0;
     for (const PinnedGroup& pin : model.pins) {
         if (state.t > pin.release) continue;
+        const PinMoment moment = pin_moment(pin, state.t);
         for (std::size_t k = 0; k < pin.particles.size(); ++k) {
-            const Vec3 there = moved_point(pin.motion, pin.centre, pin.start[k], state.t);
-            error = std::max(error, (state.x[pin.particles[k]] - there).norm());
+            Vec3 off = state.x[pin.particles[k]] - pin_place(pin, moment, k);
+            if (pin.slides()) off -= moment.slide * moment.slide.dot(off);
+            error = std::max(error, off.norm());
         }
     }
     return error;

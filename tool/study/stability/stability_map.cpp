@@ -28,13 +28,13 @@ double largest_kappa(const ClothModel& model, double h) {
 }
 
 MapCell run_cell(const std::filesystem::path& file, const std::string& integrator, double stretch,
-                 int divisor, int fps) {
+                 int divisor, const Rate& fps) {
     MapCell cell;
     cell.stretch = stretch;
     const Scene scene = load_scene(file, {fmt::format("solver.integrator=\"{}\"", integrator),
                                           fmt::format("cloth.material.stretch={:e}", stretch),
                                           fmt::format("cloth.material.shear={:e}", 0.5 * stretch),
-                                          fmt::format("solver.step=\"1/{}\"", fps * divisor)});
+                                          fmt::format("solver.step=\"{}\"", step_text(fps, divisor))});
     cell.step = scene.solver.step;
     Simulation simulation = start_simulation(scene);
     cell.kappa = largest_kappa(simulation.model, cell.step);
@@ -84,7 +84,7 @@ Plot plot_of(const StabilityMap& map) {
 }  // namespace
 
 StabilityMap make_stability_map(const std::filesystem::path& scene, const std::string& integrator) {
-    const int fps = load_scene(scene).clip.fps;
+    const Rate fps = load_scene(scene).clip.fps;
     StabilityMap map{integrator, {}};
     for (int divisor = 1; divisor <= 64; divisor *= 2) {
         for (int decade = 0; decade <= 12; ++decade)

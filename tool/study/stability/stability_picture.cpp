@@ -61,7 +61,7 @@ bool draw_hard_case(const GlContext& context, const HardOutcome& outcome, const 
     const ClothModel model = build_model(scene, placement);
     const DrawScene drawn = make_draw_scene(scene, model, placement);
     DrawFrame frame;
-    make_draw_frame(scene, model, outcome.last, std::vector<Rgb>(model.size()), frame);
+    make_draw_frame(scene, model, drawn, outcome.last, std::vector<Rgb>(model.size()), frame);
     Renderer renderer(context, drawn, {width, height, 4, 1});
     Image image;
     renderer.draw(DrawStyle::textured, frame, image);

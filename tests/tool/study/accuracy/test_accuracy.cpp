@@ -112,10 +112,56 @@ TEST_CASE("explicit steps of a study are parts of one step a frame, the same as 
     CHECK(run.point.rvm == 0);
     Scene steps = scene;
     steps.solver.integrator = Integrator::explicit_;
-    steps.solver.step = 1.0 / (16 * scene.clip.fps);
+    steps.solver.step = 1.0 / (16 * scene.clip.fps.per_second());
     Simulation simulation = start_simulation(steps);
     for (int k = 0; k < 2; ++k) next_record(simulation);
     CHECK(distance(run.trajectory, {run.trajectory[0], simulation.state.x}, 1) < 1e-12);
+}
+
+TEST_CASE(
+    "a study tries the scene's own solver first, refines nothing beyond the error, and runs what it names "
+    "again") {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / "unravel_test_accuracy_budget";
+    std::filesystem::remove_all(folder);
+    const auto keep_on = [] { return true; };
+    Scene scene = small_trampoline();
+    scene.clip.duration = 0.4;
+    scene.solver.step = 1.0 / 75;
+    scene.solver.threshold = 0.3;  // as no point of the grid has it
+    AccuracyBudget budget{240, true, true};
+    budget.error = 0.02;
+    budget.window = {3, 8};
+    const AccuracyStudy study = study_accuracy(scene, folder, budget, keep_on);
+    REQUIRE(!study.points.empty());
+    CHECK(study.points.front().setting == scene_setting(scene));
+    CHECK(study.reference.first_frame == 3);
+    CHECK(study.reference.frames == 5);
+    // All settings start where the scene's own solver has come to.
+    Simulation simulation = start_simulation(scene);
+    for (int k = 0; k < 3; ++k) next_record(simulation);
+    CHECK(study.reference.start.x == simulation.state.x);
+    // No method has two points, of its integrator's plain settings three, that keep within the error.
+    for (const AccuracyCurve& curve : curves_of(study.points, study.reference.floor)) {
+        INFO(curve.method);
+        const auto within =
+            std::count_if(curve.points.begin(), curve.points.end(),
+                          [&](const AccuracyPoint* p) { return !p->broke && p->error <= budget.error; });
+        CHECK(within <= (curve.points.front()->setting.plain() ? 2 : 1));
+    }
+    // What is recommended was run again.
+    const AccuracyPoint* best = nullptr;
+    for (const AccuracyPoint& p : study.points)
+        if (!p.broke && p.error <= budget.error && (!best || p.median() < best->median())) best = &p;
+    REQUIRE(best);
+    CHECK(best->seconds.size() > 1);
+    // The same window goes on, another one starts anew.
+    const AccuracyReference before = study.reference;
+    budget.force = false;
+    CHECK(study_accuracy(scene, folder, budget, keep_on).reference.trajectory == before.trajectory);
+    budget.window = {0, 4};
+    CHECK(study_accuracy(scene, folder, budget, keep_on).reference.frames == 4);
+    std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("points of a study come back from its table as they were") {
@@ -148,7 +194,9 @@ TEST_CASE("a small study converges and goes on from its folder") {
         std::filesystem::temp_directory_path() / "unravel_test_accuracy_study";
     std::filesystem::remove_all(folder);
     const auto keep_on = [] { return true; };
-    const AccuracyStudy first = study_accuracy(small_trampoline(), folder, {60, false, true}, keep_on);
+    AccuracyBudget budget{60, false, true};
+    budget.error = 1e-7;  // as far as the reference bears
+    const AccuracyStudy first = study_accuracy(small_trampoline(), folder, budget, keep_on);
     REQUIRE(first.points.size() > 20);
     CHECK(first.reference.floor < 1e-3);
     // Every scheme converges: its finest run is better than its coarsest that did not break.
@@ -157,7 +205,7 @@ TEST_CASE("a small study converges and goes on from its folder") {
         INFO(curve.method);
         CHECK(curve.points.back()->error < curve.points.front()->error);
     }
-    const AccuracyStudy again = study_accuracy(small_trampoline(), folder, {60, false, true}, keep_on);
+    const AccuracyStudy again = study_accuracy(small_trampoline(), folder, budget, keep_on);
     REQUIRE(again.points.size() >= first.points.size());
     for (std::size_t k = 0; k < first.points.size(); ++k)
         CHECK(again.points[k].error == first.points[k].error);
