@@ -12,9 +12,9 @@ struct Contact {
     std::uint32_t particle = 0;
     std::uint32_t solid = 0;
     bool held = false;         ///< static friction: the particle moves with the solid
-    std::uint8_t sliding = 0;  ///< steps for which it must still slide after a slip
+    std::uint8_t sliding = 0;  ///< steps before it may be tried as held, after a trial that failed
     double force = 0;    ///< N, normal force of the last step; negative: it pulled, and is to be released
-    Vec3 slip{0, 0, 0};  ///< m/s, last tangential velocity relative to the solid; zero while held
+    Vec3 slip{0, 0, 0};  ///< m/s, last tangential velocity relative to the solid; zero until it slides
 };
 
 /// What a checkpoint holds: everything that a next step reads.
