@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sim/constraints/pins.hpp"
+#include "sim/self_collision/solid_cuts.hpp"
 #include "sim/step/choose_integrator.hpp"
 #include "sim/step/stage.hpp"
 
@@ -165,6 +166,29 @@ ClothState initial_state(const Placement& placement) {
     return state;
 }
 
+namespace {
+
+// Parts that a step is taken in at most for a solid's sake.
+constexpr int most_parts = 16;
+
+// A step after which an edge passes through a solid that it did not pass through before is taken again in
+// parts, shorter and shorter: what is thin, or pulled at hard, is met before it is passed.
+StepReport uncut_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
+                      StepWorkspace& ws) {
+    StageTimes times;
+    for (int parts = 1;; parts *= 2) {
+        StepReport report = substeps_in_turn(model, options, h, parts, state, ws);
+        times += report.times;
+        report.times = times;
+        const std::uint64_t cuts = count_cuts(model, state.t, state.x);
+        if (cuts == 0 || parts == most_parts || cuts <= count_cuts(model, ws.before.t, ws.before.x))
+            return report;
+        std::swap(state, ws.before);
+    }
+}
+
+}  // namespace
+
 StepReport step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                 StepWorkspace& ws) {
     const StepPlan& plan = plan_step(model, options, h, ws);
@@ -179,6 +203,8 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
         case StepPlan::Way::coupled:
             break;
     }
+    if (model.solids_by_surfaces() && !scheme_of(planned.integrator).multistep)
+        return uncut_step(model, planned, h, state, ws);
     return coupled_step(model, planned, h, state, ws);
 }
 
