@@ -98,10 +98,7 @@ public:
         if (!unknown_.empty())
             said_.notes.push_back(fmt::format("passed over: lines of '{}'{}", fmt::join(unknown_, "', '"),
                                               more_unknown_ ? " and others" : ""));
-        if (cut_ > 0)
-            said_.notes.push_back(
-                fmt::format("{} of more than four corners or not convex: cut into triangles and quads",
-                            counted(cut_, "face", "faces")));
+        note_cut_faces(cut_, said_);
         finish_numbering(mesh_);
         return std::move(mesh_);
     }

@@ -128,10 +128,7 @@ public:
                 if (!read(element, values)) break;
             }
         }
-        if (cut_ > 0)
-            said_.notes.push_back(
-                fmt::format("{} of more than four corners or not convex: cut into triangles and quads",
-                            counted(cut_, "face", "faces")));
+        note_cut_faces(cut_, said_);
         finish_numbering(mesh_);
         return std::move(mesh_);
     }

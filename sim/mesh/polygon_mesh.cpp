@@ -45,6 +45,13 @@ bool add_polygon(PolygonMesh& mesh, std::vector<std::uint32_t> vertex, std::vect
     return cut;
 }
 
+void note_cut_faces(std::size_t cut, MeshMessages& said) {
+    if (cut == 0) return;
+    said.notes.push_back(
+        fmt::format("{} of more than four corners or not convex: cut into triangles and quads",
+                    counted(cut, "face", "faces")));
+}
+
 void finish_numbering(PolygonMesh& mesh) {
     for (auto& [name, vertices] : mesh.groups) {
         std::sort(vertices.begin(), vertices.end());

@@ -80,6 +80,9 @@ std::string counted(std::size_t count, const char* one, const char* many);
 bool add_polygon(PolygonMesh& mesh, std::vector<std::uint32_t> vertex, std::vector<std::uint32_t> uv,
                  std::uint32_t part, std::uint32_t number, int line);
 
+/// Notes how many faces add_polygon() has cut; nothing where there are none.
+void note_cut_faces(std::size_t cut, MeshMessages& said);
+
 /// Sorts and makes unique the vertices of every group, and takes the file's numbering for the mesh's own.
 void finish_numbering(PolygonMesh& mesh);
 

@@ -6,6 +6,8 @@
 
 #include "tool/study/accuracy/accuracy_verdict.hpp"
 
+#include "tool/report/html.hpp"
+
 namespace unravel::tool {
 
 namespace {
@@ -17,20 +19,6 @@ constexpr int front_color = 7, automatic_color = 9;
 
 int color_of(Integrator integrator) {
     return integrator == Integrator::automatic ? automatic_color : static_cast<int>(integrator);
-}
-
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '<') {
-            out += "&lt;";
-        } else if (c == '&') {
-            out += "&amp;";
-        } else {
-            out += c;
-        }
-    }
-    return out;
 }
 
 // The document within another: without its XML declaration.
@@ -161,13 +149,13 @@ std::string accuracy_page(const std::vector<AccuracyPoint>& points, const Accura
         "vary "
         "one of them, how bending is treated, or how slack springs are activated.</p>\n{10}\n"
         "<pre>{11}</pre></html>\n",
-        escaped(scene), escaped(recommendation(points, error, seconds_simulated, fps)),
+        html_text(scene), html_text(recommendation(points, error, seconds_simulated, fps)),
         inlined(plot_svg(accuracy_plot(points, reference, scene, seconds_simulated, fps, CostAxis::time))),
         seconds_simulated, reference.first.method(), step_text(fps, reference.first.steps_per_frame),
         reference.first.tolerance, reference.second.method(),
         step_text(fps, reference.second.steps_per_frame), reference.floor,
         inlined(plot_svg(accuracy_plot(points, reference, scene, seconds_simulated, fps, CostAxis::rvm))),
-        escaped(accuracy_table(points, reference, error, fps)));
+        html_text(accuracy_table(points, reference, error, fps)));
 }
 
 }  // namespace unravel::tool

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "tool/report/html.hpp"
+
 namespace unravel::tool {
 
 namespace {
@@ -32,20 +34,6 @@ std::string energy_text(const HardLine& line) {
 std::string bound_text(const HardLine& line) {
     if (line.outcome.kind != Kind::survived) return line.outcome.says;
     return fmt::format("strain ≤ {}", percent(line.hard.strain));
-}
-
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '<') {
-            out += "&lt;";
-        } else if (c == '&') {
-            out += "&amp;";
-        } else {
-            out += c;
-        }
-    }
-    return out;
 }
 
 }  // namespace
@@ -148,9 +136,9 @@ std::string stability_html(const std::vector<HardLine>& lines, const std::vector
         out += "<article>";
         out += line.picture.empty() ? std::string("<div class=\"none\"></div>")
                                     : fmt::format("<img src=\"{}\" alt=\"{}\" loading=\"lazy\">",
-                                                  line.picture, escaped(line.hard.what));
+                                                  line.picture, html_text(line.hard.what));
         out += fmt::format("<div class=\"text\"><span class=\"v {0}\">{0}</span><h2>{1}</h2>", verdict(line),
-                           escaped(line.hard.what));
+                           html_text(line.hard.what));
         if (o.kind == Kind::survived) {
             out += fmt::format(
                 "<dl><dt>particles, steps</dt><dd>{}, {}</dd><dt>largest strain</dt><dd>{} (≤ {})</dd>"
@@ -163,13 +151,13 @@ std::string stability_html(const std::vector<HardLine>& lines, const std::vector
                 o.penetration, o.cg_most, o.final_speed, o.again, percent(o.flicker), percent(o.chatter),
                 percent(o.jitter), o.same_bits ? "same" : "DIFFERENT", o.hash);
         } else {
-            out += fmt::format("<p>{}</p>", escaped(bound_text(line)));
+            out += fmt::format("<p>{}</p>", html_text(bound_text(line)));
         }
         for (const std::string& failure : o.failures)
-            out += fmt::format("<p class=\"FAILED\">{}</p>", escaped(failure));
+            out += fmt::format("<p class=\"FAILED\">{}</p>", html_text(failure));
         std::string changed = line.hard.scene.filename().string();
         for (const std::string& set : line.hard.set) changed += " --set " + set;
-        out += fmt::format("<code>{}</code></div></article>\n", escaped(changed));
+        out += fmt::format("<code>{}</code></div></article>\n", html_text(changed));
     }
     out += "</main>\n";
     if (!maps.empty()) out += "<h1>Stiffness and step</h1>\n<main>\n";

@@ -6,23 +6,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tool/report/html.hpp"
+
 namespace unravel::tool {
 
 namespace {
-
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '<') {
-            out += "&lt;";
-        } else if (c == '&') {
-            out += "&amp;";
-        } else {
-            out += c;
-        }
-    }
-    return out;
-}
 
 std::string number(double value) {
     return std::isfinite(value) ? fmt::format("{:.4g}", value) : "–";
@@ -113,11 +101,11 @@ std::string markdown_table(const std::vector<std::string>& head, const std::vect
 
 std::string html_table(const std::vector<std::string>& head, const std::vector<Row>& rows) {
     std::string text = "<table><tr>";
-    for (const std::string& name : head) text += "<th>" + escaped(name) + "</th>";
+    for (const std::string& name : head) text += "<th>" + html_text(name) + "</th>";
     text += "</tr>\n";
     for (const Row& row : rows) {
         text += row.holds ? "<tr>" : "<tr class=\"off\">";
-        for (const std::string& cell : row.cells) text += "<td>" + escaped(cell) + "</td>";
+        for (const std::string& cell : row.cells) text += "<td>" + html_text(cell) + "</td>";
         text += "</tr>\n";
     }
     return text + "</table>\n";
@@ -153,8 +141,8 @@ std::string verify_html(const std::vector<VerifyOutcome>& outcomes) {
         "<h1>Physics against theory</h1>\n";
     text += html_table(summary_head, summary_rows(outcomes));
     for (const VerifyOutcome& outcome : outcomes) {
-        text +=
-            fmt::format("<h2>{}</h2>\n<p>{}</p>\n", escaped(outcome.of->name), escaped(about(*outcome.of)));
+        text += fmt::format("<h2>{}</h2>\n<p>{}</p>\n", html_text(outcome.of->name),
+                            html_text(about(*outcome.of)));
         if (outcome.result.plot) {
             const std::string svg = plot_svg(*outcome.result.plot);
             const std::size_t start = svg.find("<svg");  // without the declaration of a file of its own
