@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "render/draw_scene.hpp"
+
 namespace unravel::render {
 
 /// The uniform block "Frame" of shaders/frame.glsl, std140: what every shader of one frame shares. Colours
@@ -26,5 +28,8 @@ struct FrameBlock {
 };
 static_assert(sizeof(FrameBlock) ==
               (2 + FrameBlock::sky_directions) * 64 + (FrameBlock::sky_directions + 20) * 16);
+
+/// The part of it that is the same for every frame and style.
+FrameBlock fixed_block(const DrawScene& scene);
 
 }  // namespace unravel::render

@@ -159,6 +159,9 @@ bool solve_on_grid(GridSystem& system, bool multigrid, std::uint32_t patience, c
                    GridCgWorkspace& ws, ComponentSolve& out) {
     GridCg cg(system, ws);
     out = {};
+    out.because = options.preconditioner != Preconditioner::automatic ? SolveReason::asked
+                  : multigrid                                         ? SolveReason::many_expected
+                                                                      : SolveReason::on_grid;
     const double target = options.tolerance * options.tolerance * cg.right_side();
     double residual = cg.true_residual();
     out.rvm = system.rows;
@@ -181,11 +184,13 @@ bool solve_on_grid(GridSystem& system, bool multigrid, std::uint32_t patience, c
         if (until < limit && (out.iterations >= until || (stalled && cg.multigrid))) {
             until = limit;
             cg.multigrid = !cg.multigrid;
+            out.because = SolveReason::took_over;
             if (cg.multigrid) ws.multigrid.build(system);
         } else if (stalled) {
             return false;
         }
     }
+    out.by = cg.multigrid ? SolvedBy::multigrid : SolvedBy::grid;
     out.converged = residual <= target;
     out.residual = target > 0 ? options.tolerance * std::sqrt(std::max(residual, 0.0) / target) : 0.0;
     return std::isfinite(residual);

@@ -29,7 +29,7 @@ ComponentSolve solve_single(const ComponentRows& rows) {
     // x holds (I − S) z already, S y has no say.
     rows.ws.x[row] +=
         rows.ws.constrained_blocks.inverse[row] * (rows.A.b[row] - rows.A.diagonal[row] * rows.ws.x[row]);
-    return {1, 1, 0.0, true};
+    return {1, 1, 0.0, true, SolvedBy::block, SolveReason::one_row};
 }
 
 // Here the √κ of expected_iterations() is the mean over rows of a row's: its mean coupling over what of its
@@ -151,12 +151,15 @@ ComponentSolve solve_component(const ComponentRows& rows, const SolveOptions& op
     const PreconditionerMethod* method = &method_on_rows(options.preconditioner);
     const PreconditionerMethod* other = nullptr;
     std::uint32_t until = ever;
+    const bool asked = options.preconditioner != Preconditioner::automatic;
+    result.because = asked ? SolveReason::asked : SolveReason::few_rows;
     if (rows.ws.aggregation_of[rows.component]) {
         other = &method_of(Preconditioner::aggregation);
         until = most_iterations;
         if (options.preconditioner == Preconditioner::aggregation || pays_cycles(rows)) {
             std::swap(method, other);
             until = most_cycles_of_multigrid;
+            if (!asked) result.because = SolveReason::many_expected;
         }
     }
     const auto limit = static_cast<std::uint32_t>(options.max_iterations);
@@ -170,7 +173,9 @@ ComponentSolve solve_component(const ComponentRows& rows, const SolveOptions& op
         if (!other || !gives_way) break;
         std::swap(method, other);
         until = ever;
+        result.because = SolveReason::took_over;
     }
+    result.by = method->kind == Preconditioner::aggregation ? SolvedBy::aggregation : SolvedBy::rows;
     result.rvm = rows.count() * (1 + static_cast<std::uint64_t>(result.iterations));
     result.converged = residual <= target;
     result.residual = target > 0 ? options.tolerance * std::sqrt(std::max(residual, 0.0) / target) : 0.0;

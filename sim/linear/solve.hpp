@@ -10,6 +10,7 @@
 #include "sim/linear/aggregates.hpp"
 #include "sim/linear/components.hpp"
 #include "sim/linear/preconditioner.hpp"
+#include "sim/linear/solver_choice.hpp"
 #include "sim/linear/sweep_preconditioner.hpp"
 #include "sim/linear/system.hpp"
 
@@ -31,6 +32,8 @@ struct ComponentSolve {
     std::uint64_t rvm = 0;  ///< row–vector multiplies: rows × products with A, the first residual's included
     double residual = 0;    ///< relative, as SolveOptions::tolerance measures it
     bool converged = true;
+    SolvedBy by = SolvedBy::nothing;
+    SolveReason because = SolveReason::nothing_implicit;
 };
 
 /// Memory of the solver, kept between steps.

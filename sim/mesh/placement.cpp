@@ -122,10 +122,6 @@ Vec3 placed_particle(const Cloth& cloth, int i, int j) {
     return StartPlaces(cloth).placed(i, j);
 }
 
-Vec3 started_particle(const Cloth& cloth, int i, int j) {
-    return StartPlaces(cloth).started(i, j);
-}
-
 std::vector<Vec3> placed_particles(const Cloth& cloth) {
     const auto [nu, nv] = cloth.particles;
     const StartPlaces places(cloth);

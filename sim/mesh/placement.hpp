@@ -49,9 +49,6 @@ private:
 /// Where the particle is placed [m], without jitter.
 Vec3 placed_particle(const Cloth& cloth, int i, int j);
 
-/// Where it starts [m]: placed, and displaced by the cloth's jitter and wrinkles along its normal.
-Vec3 started_particle(const Cloth& cloth, int i, int j);
-
 /// As placed_particle(), all of them, at j · nu + i.
 std::vector<Vec3> placed_particles(const Cloth& cloth);
 

@@ -13,7 +13,7 @@
 #include "sim/model/mesh_links.hpp"
 #include "sim/model/mesh_springs.hpp"
 #include "sim/model/moduli.hpp"
-#include "sim/solids/motion.hpp"
+#include "sim/model/pins.hpp"
 
 namespace unravel::sim {
 
@@ -242,52 +242,6 @@ void place(const Grid& g, Placement& placement) {
     }
 }
 
-// How much nearer to their middle the particles come whose row is drawn together to `width`.
-double gathered_share(const PinnedGroup& group, bool ring, double width) {
-    double length = 0;
-    for (std::size_t k = ring ? 0 : 1; k < group.start.size(); ++k)
-        length += (group.start[k] - group.start[k > 0 ? k - 1 : group.start.size() - 1]).norm();
-    return length > 0 ? width / length : 1;
-}
-
-// What the pin rides and slides on.
-void attach(const Pin& pin, PinnedGroup& group) {
-    group.carried = pin.carried;
-    if (!pin.slide.isZero(0)) group.slide = pin.slide.normalized();
-    if (!pin.carried.by) return;
-    const Solid& body = *pin.carried.by;
-    if (!pin.rod.empty()) {
-        const Pose rod = solid_pose(body, 0);
-        group.slide = rod.linear().col(1);
-        group.rod = rod.translation();
-        group.reach = 0.5 * body.height;
-    }
-    if (carrying_triangle(body, group.centre) < 0) return;
-    for (const Vec3& x : group.start) group.triangles.push_back(carrying_triangle(body, x));
-}
-
-void add_pins(const Grid& g, double begin, const Placement& placement, std::vector<PinnedGroup>& groups) {
-    for (const Pin& pin : g.cloth.pins) {
-        PinnedGroup group;
-        for (const std::size_t index : pinned_particles(g.cloth, pin)) {
-            group.particles.push_back(g.patch.first + static_cast<std::uint32_t>(index));
-            group.start.push_back(placement.x[group.particles.back()]);
-            group.centre += group.start.back();
-        }
-        if (group.particles.empty()) continue;
-        group.centre /= static_cast<double>(group.particles.size());
-        group.motion = pin.motion;
-        group.release = pin.release.value_or(infinity);
-        if (pin.gather) {
-            group.gather = gathered_share(group, g.patch.tube, *pin.gather);
-            group.gather_begin = begin;
-            group.gather_time = pin.gather_time;
-        }
-        attach(pin, group);
-        groups.push_back(std::move(group));
-    }
-}
-
 // What the scene leaves open: near enough that no particle slips between two others, as stiff as the stiffest
 // cloth, and damped to a fifth of critical.
 SelfCollision fitting(SelfCollision settings, std::span<const Grid> grids, const ClothModel& model) {
@@ -390,7 +344,7 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
         }
     }
     for (const Grid& g : grids) place(g, placement);
-    for (const Grid& g : grids) add_pins(g, model.begin, placement, model.pins);
+    for (const Grid& g : grids) add_pins(g.cloth, g.patch, model.begin, placement, model.pins);
     if (!model.pins.empty() && model.curvature.size() > 0) stiffen_clamped(model);
     for (const Grid& g : grids) {
         if (!g.patch.grid()) add_stitches(g.cloth, g.patch, placement, model);

@@ -52,6 +52,8 @@ void members(Archive& archive, Record& r) {
         archive(c.rvm);
         archive(c.residual);
         archive(c.converged);
+        archive(c.by);
+        archive(c.because);
     });
     archive.list(r.reports, [&](auto& s) {
         archive(s.step);
@@ -238,6 +240,11 @@ FrameRecord parse_record(std::span<const std::uint8_t> bytes, const std::filesys
         // Before the first step there is one component and no solve.
         require(c >= -1 && c < std::max(components, 1), file,
                 "is damaged: a particle's component is not there");
+    }
+    for (const ComponentSolve& s : r.solves) {
+        require(static_cast<std::uint8_t>(s.by) < solver_count &&
+                    static_cast<std::uint8_t>(s.because) < solve_reason_count,
+                file, "is damaged: a component's solver is none");
     }
     for (const SpringState s : r.springs) {
         require(s <= SpringState::implicit, file, "is damaged: a spring has no such state");

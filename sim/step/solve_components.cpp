@@ -49,24 +49,43 @@ void mark_beyond_grids(const Couplings& couplings, const Components& components,
     }
 }
 
+// Whether a component, whose first particle lies on `grid` or on none, goes to the grid's solver.
+SolveReason why_on_grid(const Components& components, std::size_t c, const GridSprings* grid, bool beyond) {
+    const std::uint32_t size = components.size(c);
+    if (size < least_rows_on_grid) return SolveReason::few_rows;
+    const std::uint32_t first = components.order[components.start[c]],
+                        last = components.order[components.start[c + 1] - 1];
+    if (!grid || last >= grid->particle + grid->count()) return SolveReason::on_no_grid;
+    if (beyond) return SolveReason::beyond_grid;
+    const std::uint32_t rows = (last - grid->particle) / grid->nu - (first - grid->particle) / grid->nu + 1;
+    return size < least_share * rows * grid->nu ? SolveReason::sparse : SolveReason::on_grid;
+}
+
+// What rows solved although nobody asked for rows: the reason that kept it off the grid, unless it is
+// cycles' own.
+void explain_rows(const SolvePlan& plan, std::vector<ComponentSolve>& solves) {
+    for (std::size_t c = 0; c < solves.size(); ++c) {
+        if (solves[c].by != SolvedBy::rows || solves[c].because != SolveReason::few_rows) continue;
+        const SolveReason kept_off = plan.because.empty() ? SolveReason::on_no_grid : plan.because[c];
+        solves[c].because = kept_off == SolveReason::on_grid ? SolveReason::beyond_single : kept_off;
+    }
+}
+
 void plan_solves(const StepSystem& step, const SolveOptions& options, GridSolves& ws) {
     const std::span<const GridSprings> grids = step.grids;
     const Components& components = step.components;
     SolvePlan& plan = ws.plan;
     plan.on_grid.clear();
     plan.elsewhere.clear();
+    plan.because.clear();
     if (!may_use_grids(options) || grids.empty()) return;
     mark_beyond_grids(step.couplings, components, ws.beyond);
+    plan.because.resize(components.count());
     for (std::size_t c = 0; c < components.count(); ++c) {
-        const std::uint32_t size = components.size(c);
-        if (size < least_rows_on_grid || ws.beyond[c]) continue;
-        const std::uint32_t first = components.order[components.start[c]],
-                            last = components.order[components.start[c + 1] - 1];
-        const GridSprings* g = grid_of(grids, first);
-        if (!g || last >= g->particle + g->count()) continue;
-        const std::uint32_t rows = (last - g->particle) / g->nu - (first - g->particle) / g->nu + 1;
-        if (size < least_share * rows * g->nu) continue;
-        plan.on_grid.push_back({static_cast<std::uint32_t>(c), g});
+        const GridSprings* const g = grid_of(grids, components.order[components.start[c]]);
+        plan.because[c] = why_on_grid(components, c, g, ws.beyond[c] != 0);
+        if (plan.because[c] == SolveReason::on_grid)
+            plan.on_grid.push_back({static_cast<std::uint32_t>(c), g});
     }
     if (plan.on_grid.empty()) return;
     plan.elsewhere.assign(components.count(), 0);
@@ -169,6 +188,7 @@ void solve_components(const StepSystem& step, const SolveOptions& options, GridS
         assemble(step.couplings, step.load, step.components, step.constraints, step.h, rows, plan.elsewhere);
         solve_rows();
     }
+    explain_rows(plan, out);
     for (std::size_t k = 0; k < plan.on_grid.size(); ++k) {
         if (!grids.grids[k]->solved) continue;
         out[plan.on_grid[k].component] = grids.grids[k]->solve;

@@ -28,6 +28,7 @@ struct SolvePlan {
     };
     std::vector<OnGrid> on_grid;
     std::vector<std::uint8_t> elsewhere;  ///< (components) 1: on a grid; empty: none is
+    std::vector<SolveReason> because;     ///< (components) why there or not; empty: no grid was considered
 };
 
 /// The components that are solved on grids, and what that takes; kept between steps for its memory.

@@ -9,7 +9,7 @@ from tool import call
 ELSEWHERE = {
     "camera": "pictures", "look": "pictures", "size of clip": "pictures", "color": "pictures", "name": "words",
     "root": "files", "mesh_hash": "written by the tool",
-    "count": "written once, tests/sim/scene/test_repeat.cpp", "spacing": "as count", "mirror": "as count",
+    "count": "written once, tests/sim/scene_file/test_repeat.cpp", "spacing": "as count", "mirror": "as count",
     "include": "files",
     "mesh_object": "tests/sim/mesh", "mesh_group": "tests/sim/mesh", "mesh_up": "tests/sim/mesh",
     "mesh_merge": "tests/sim/mesh", "mesh_holes": "tests/sim/mesh", "mesh_shell": "tests/sim/mesh",

@@ -13,9 +13,9 @@
 #include "render/av.hpp"
 #include "render/video.hpp"
 #include "render/video_palette.hpp"
-#include "render/video_read.hpp"
 #include "tests/base/temporary_folder.hpp"
 #include "tests/render/numbered_video.hpp"
+#include "tests/render/video_read.hpp"
 
 using namespace unravel;
 using namespace unravel::render;

@@ -6,10 +6,10 @@
 #include "base/whole_file.hpp"
 #include "render/av.hpp"
 #include "render/video.hpp"
-#include "render/video_read.hpp"
 #include "tests/base/file_size_limit.hpp"
 #include "tests/base/temporary_folder.hpp"
 #include "tests/render/numbered_video.hpp"
+#include "tests/render/video_read.hpp"
 
 using namespace unravel;
 using namespace unravel::render;

@@ -1,6 +1,7 @@
 #include "tool/cli/command_line.hpp"
 
 #include <iostream>
+#include <utility>
 
 #include "tool/base/exit.hpp"
 #include "tool/base/version.hpp"
@@ -13,6 +14,12 @@ CommandLine::CommandLine(std::vector<std::string> words)
       app_("Unravel: cloth simulated with a decomposing solver, rendered off-screen.", "unravel") {
     app_.set_version_flag("--version", version());
     app_.require_subcommand(1);
+}
+
+CLI::App& CommandLine::add_command(const char* name, const char* what, std::function<int()> act) {
+    CLI::App* const command = app_.add_subcommand(name, what);
+    command->callback([this, act = std::move(act)] { chosen_ = act; });
+    return *command;
 }
 
 int CommandLine::run() {

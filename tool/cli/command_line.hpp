@@ -26,10 +26,8 @@ public:
     /// Adds a command that does `act`, which returns an exit code and may throw what guarded() knows.
     template <class Options>
     Command<Options> add(const char* name, const char* what, int (*act)(const Options&)) {
-        CLI::App* command = app_.add_subcommand(name, what);
         auto options = std::make_shared<Options>();
-        command->callback([this, options, act] { chosen_ = [options, act] { return act(*options); }; });
-        return {*command, *options};
+        return {add_command(name, what, [options, act] { return act(*options); }), *options};
     }
 
     const std::vector<std::string>& words() const { return words_; }
@@ -40,6 +38,9 @@ public:
     int run();
 
 private:
+    // Out of line: what makes an App compiles all of CLI11.
+    CLI::App& add_command(const char* name, const char* what, std::function<int()> act);
+
     std::vector<std::string> words_;
     CLI::App app_;
     std::function<int()> chosen_;

@@ -80,6 +80,8 @@ Json step_numbers(const InspectedStep& step) {
              {"iterations", row.solve.iterations},
              {"rvm", row.solve.rvm},
              {"residual", row.solve.residual},
+             {"solver", words(row.solve.by)},
+             {"solver_because", words(row.solve.because)},
              {"converged", row.solve.converged}});
     }
     return json;

@@ -44,19 +44,24 @@ std::string facts_html(const InspectedStep& step) {
            fact("greatest strain", fmt::format("{:.3g}%", 100 * r.max_strain));
 }
 
+std::string solver_words(const ComponentSolve& solve) {
+    return html_text(fmt::format("{}: {}", words(solve.by), words(solve.because)));
+}
+
 std::string components_html(const InspectedStep& step) {
     std::string html;
     for (std::size_t k = 0; k < std::min(step.components.size(), most_rows); ++k) {
         const ComponentRow& row = step.components[k];
         html += fmt::format(
             "<tr><td><span class=\"swatch\" style=\"background:#{:02x}{:02x}{:02x}\"></span></td>"
-            "<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.2e}</td></tr>\n",
+            "<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.2e}</td><td "
+            "class=\"words\">{}</td></tr>\n",
             row.color.r, row.color.g, row.color.b, row.id, row.particles, row.boundary, row.springs,
-            row.solve.iterations, row.solve.rvm, row.solve.residual);
+            row.solve.iterations, row.solve.rvm, row.solve.residual, solver_words(row.solve));
     }
     if (step.components.size() > most_rows)
         html += fmt::format(
-            "<tr class=\"rest\"><td colspan=\"8\">and {} smaller ones; --json lists all</td></tr>",
+            "<tr class=\"rest\"><td colspan=\"9\">and {} smaller ones; --json lists all</td></tr>",
             step.components.size() - most_rows);
     return html;
 }

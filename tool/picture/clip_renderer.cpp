@@ -8,7 +8,7 @@
 
 #include "base/whole_file.hpp"
 #include "render/png.hpp"
-#include "render/video_read.hpp"
+#include "render/video_length.hpp"
 #include "tool/picture/picture_stamp.hpp"
 #include "tool/picture/view.hpp"
 

@@ -36,7 +36,8 @@ Json frame_json(const PageFrame& frame, const std::vector<ComponentRow>& rows) {
     json["components"] = Json::array();
     for (const ComponentRow& row : rows) {
         json["components"].push_back({row.id, hex(row.color), row.particles, row.boundary, row.springs,
-                                      row.solve.iterations, row.solve.rvm, rounded(row.solve.residual)});
+                                      row.solve.iterations, row.solve.rvm, rounded(row.solve.residual),
+                                      row.solve.by, row.solve.because});
     }
     if (frame.rest.count > 0) {
         json["rest"] = {{"count", frame.rest.count},
@@ -131,6 +132,8 @@ void write_report_page(const Scene& scene, const ClothModel& model, const RunFol
     Json data;
     std::vector<std::pair<std::string, std::vector<int>>> pictures;  // views and the frames within the page
     data["views"] = Json::array();
+    for (std::uint8_t k = 0; k < solver_count; ++k) data["solvers"].push_back(words(SolvedBy{k}));
+    for (std::uint8_t k = 0; k < solve_reason_count; ++k) data["reasons"].push_back(words(SolveReason{k}));
     for (const Layout layout : page_layouts) {
         const std::string name = layout_name(layout);
         const std::vector<int> files = pictures_on_disk(folder, name, frames);

@@ -71,12 +71,14 @@ function showFacts(index) {
 
 // --- components
 
-function componentRow([id, color, ...values]) {
+function componentRow([id, color, particles, boundary, springs, iterations, rvm, residual, solver, reason]) {
   const row = make('tr');
   const swatch = make('td');
   swatch.append(make('span', '', {class: 'swatch', style: `background:${color}`, role: 'img', 'aria-label': color}));
   row.append(swatch, make('td', String(id)));
-  for (const value of values) row.append(make('td', shortNumber(value)));
+  for (const value of [particles, boundary, springs, iterations, rvm, residual])
+    row.append(make('td', shortNumber(value)));
+  row.append(make('td', `${data.solvers[solver]}: ${data.reasons[reason]}`, {class: 'words'}));
   return row;
 }
 
@@ -86,7 +88,7 @@ function showComponents(frame) {
     const row = make('tr', undefined, {class: 'rest'});
     row.append(make('td', `${frame.rest.count} smaller`, {colspan: 2}), make('td', shortNumber(frame.rest.particles)),
                make('td', ''), make('td', shortNumber(frame.rest.springs)), make('td', shortNumber(frame.rest.iterations)),
-               make('td', shortNumber(frame.rest.rvm)), make('td', ''));
+               make('td', shortNumber(frame.rest.rvm)), make('td', '', {colspan: 2}));
     rows.push(row);
   }
   element('components').tBodies[0].replaceChildren(...rows);

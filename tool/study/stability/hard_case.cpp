@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "sim/constraints/pins.hpp"
+#include "sim/run/shadow_energy.hpp"
 #include "sim/run/simulate.hpp"
 #include "sim/scene_file/load.hpp"
 #include "sim/solids/sdf.hpp"
@@ -20,18 +21,6 @@ namespace {
 
 // A particle on a solid's very surface is inside by rounding.
 constexpr double rounding = 1e-12;
-
-// The energy that a run moves: by how much its least may differ from its start.
-double energy_scale(const Simulation& simulation, const StepReport& first) {
-    double weight = 0, size = 0;
-    for (const double m : simulation.model.mass) weight += m * simulation.model.gravity.norm();
-    for (const ClothPatch& patch : simulation.model.cloths)
-        size = std::max({size, patch.size[0], patch.size[1]});
-    double strained = first.potential;
-    for (std::size_t p = 0; p < simulation.model.size(); ++p)
-        strained += simulation.model.mass[p] * simulation.model.gravity.dot(simulation.state.x[p]);
-    return first.kinetic + std::max(strained, 0.0) + weight * size;
-}
 
 double deepest(const ClothModel& model, const ClothState& state, const std::vector<char>& pinned) {
     double depth = 0;
@@ -70,32 +59,6 @@ std::vector<char> pinned_particles_at(const ClothModel& model, double t) {
     return pinned;
 }
 
-// What forward-backward Euler keeps is not the energy H but a shadow of it, since v' lags half a step behind
-// x' (backward error analysis: Hairer, Lubich & Wanner 2006, IX.3; f = -grad V, K its Hessian):
-//   H + h/2 v·f + h²/12 (v·K v + f·f/m) + O(h³);
-// for linear springs the first of these terms is enough. H swings by them for ever, and does not grow.
-struct Shadow {
-    double first = 0, second = 0;  // J, the terms in h and h²
-};
-
-Shadow shadow_terms(const ClothModel& model, ForceMemory& forces, const ClothState& state, double h) {
-    std::vector<Vec3> force(model.size()), x(model.size());
-    // v·f with f at x + ahead v.
-    const auto power_at = [&](double ahead) {
-        for (std::size_t p = 0; p < x.size(); ++p) x[p] = state.x[p] + ahead * state.v[p];
-        conservative_forces(model, x, forces, force);
-        double power = 0;
-        for (std::size_t p = 0; p < model.size(); ++p) power += force[p].dot(state.v[p]);
-        return power;
-    };
-    const double ahead = power_at(h), power = power_at(0);
-    double squares = 0;
-    for (std::size_t p = 0; p < model.size(); ++p) squares += force[p].squaredNorm() / model.mass[p];
-    for (const PinnedGroup& pin : model.pins)
-        for (const std::uint32_t p : pin.particles) squares -= force[p].squaredNorm() / model.mass[p];
-    return {0.5 * h * power, h * h / 12 * ((power - ahead) / h + squares)};
-}
-
 // Follows the energy: how far it rises above its least so far. `swing`: where steps with explicit springs
 // change in length, each keeps another H + h/2 v·f, and no one quantity is kept by all. Whatever they
 // keep lies between H - h/2 |v·f| and H + h/2 |v·f|; what rises is then the least that it can be above the
@@ -107,7 +70,7 @@ public:
         MeasureWorkspace scratch;
         prepare_terms(simulation.model, scene.solver.step, forces_);
         measure(simulation.model, forces_, simulation.state, scratch, start);
-        scale_ = energy_scale(simulation, start);
+        scale_ = energy_scale(simulation.model, simulation.state, start);
         least_ = start.kinetic + start.potential;
         lags_ = scene.solver.integrator == Integrator::explicit_;
     }
@@ -115,7 +78,7 @@ public:
     double add(const Simulation& simulation, const StepReport& report) {
         double energy = report.kinetic + report.potential;
         const bool swings = swing_ && report.explicit_ > 0;
-        Shadow shadow;
+        ShadowTerms shadow;
         if (lags_ || swings) {
             prepare_terms(simulation.model, report.h / report.substeps, forces_);
             shadow = shadow_terms(simulation.model, forces_, simulation.state, report.h);

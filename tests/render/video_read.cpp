@@ -1,4 +1,4 @@
-#include "render/video_read.hpp"
+#include "tests/render/video_read.hpp"
 
 extern "C" {
 #include <libavutil/pixdesc.h>
@@ -126,21 +126,6 @@ VideoFacts read_video(const std::filesystem::path& file,
     require_read(avcodec_send_packet(decoder.get(), nullptr), file, log);
     require_read(frames.drain(*decoder), file, log);
     return facts;
-}
-
-int count_video_frames(const std::filesystem::path& file) {
-    const av::LogCapture log;
-    AVFormatContext* opened = nullptr;
-    if (avformat_open_input(&opened, ("file:" + file.string()).c_str(), nullptr, nullptr) < 0) return 0;
-    const av::Demuxer demuxer(opened);
-    const auto packet = av::made<av::Packet>(av_packet_alloc());
-    int frames = 0;
-    // There is one stream in what we write.
-    while (av_read_frame(demuxer.get(), packet.get()) >= 0) {
-        frames += packet->stream_index == 0 ? 1 : 0;
-        av_packet_unref(packet.get());
-    }
-    return frames;
 }
 
 }  // namespace unravel::render

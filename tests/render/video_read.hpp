@@ -26,7 +26,4 @@ struct VideoFacts {
 VideoFacts read_video(const std::filesystem::path& file,
                       const std::function<void(const Image&, double seconds)>& each = {});
 
-/// Frames that a video holds, without decoding them; 0 where it can't be read.
-int count_video_frames(const std::filesystem::path& file);
-
 }  // namespace unravel::render

@@ -127,16 +127,16 @@ TEST_CASE("wrinkles are smooth, bounded, and the same on any grid", "[scene]") {
     const Cloth coarse = sheet_with(keys);
     Cloth fine = coarse;
     fine.particles = {81, 9};
+    const StartPlaces on_coarse(coarse), on_fine(fine);
     double most = 0;
     for (int i = 0; i < 81; ++i) {
         for (int j = 0; j < 9; ++j) {
-            const double height = started_particle(fine, i, j).y();
+            const double height = on_fine.started(i, j).y();
             most = std::max(most, std::abs(height));
             if (i % 2 == 0 && j % 2 == 0)
-                CHECK(started_particle(coarse, i / 2, j / 2).y() == Approx(height).margin(1e-15));
+                CHECK(on_coarse.started(i / 2, j / 2).y() == Approx(height).margin(1e-15));
             // The slope of gradient noise is below 3 of its height per unit.
-            if (i > 0)
-                CHECK(std::abs(height - started_particle(fine, i - 1, j).y()) < 3 * 0.02 * 0.025 / 0.2);
+            if (i > 0) CHECK(std::abs(height - on_fine.started(i - 1, j).y()) < 3 * 0.02 * 0.025 / 0.2);
         }
     }
     CHECK(most <= 0.02);
