@@ -45,7 +45,7 @@ vec2 soft_visibility(sampler2D depths, vec3 at, vec2 rise, ivec4 tile, float sou
     bool inside = all(greaterThan(at.xy, vec2(0.0))) && all(lessThan(at.xy, vec2(1.0)));
     // Loops that need no lookup get a length of none: llvmpipe spends on a branch that no pixel of a block takes as
     // much as on one that all take, but leaves a loop after its first round.
-    if (!inside) searches = 0;
+    if (!inside) searches = taps = 0;
     const mat2 golden = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);
     // Places and lengths across the map in its texels.
     vec2 spoke = vec2(cos(turn.angle), sin(turn.angle)), size = vec2(tile.zw), place = at.xy * size, last = size - 1.0;
@@ -65,8 +65,9 @@ vec2 soft_visibility(sampler2D depths, vec3 at, vec2 rise, ivec4 tile, float sou
             found += vec2(depth, 1.0);
     }
     found = quad_mean(found);
-    if (found.y == 0.0) taps = 0;
-    float width = max(least, (at.z - found.x / max(found.y, 1e-3)) * source), lit = 0.0;
+    // Few lookups fall so near that they find what nearly touches this place: that is looked for once more.
+    if (found.y == 0.0) taps /= 2;
+    float width = found.y == 0.0 ? least : max(least, (at.z - found.x / found.y) * source), lit = 0.0;
     float disk = width * size.x, doubt = size.x;
     for (int i = 0; i < taps; ++i) {
         vec2 offset = spoke * (sqrt((float(i) + (turn.part + 0.5) / turn.parts) / float(taps)) * disk);
@@ -76,7 +77,7 @@ vec2 soft_visibility(sampler2D depths, vec3 at, vec2 rise, ivec4 tile, float sou
         // Within a texel's depth of the plane a lookup is in doubt.
         lit += clamp(1.3 - (plane - texelFetch(depths, tile.xy + here, 0).r) * doubt, 0.0, 1.0);
     }
-    return vec2(found.y == 0.0 ? 1.0 : lit / float(max(taps, 1)), width);
+    return vec2(inside ? lit / float(taps) : 1.0, width);
 }
 
 #ifdef SHARP
@@ -126,7 +127,7 @@ float key_visibility(vec3 p, vec3 n, vec3 flat_n, float apart, bool needed) {
     float away = 1.0 - dot(n, key_direction.xyz);
     vec3 at = (shadow_matrix * vec4(p + n * shadow.x * (0.5 + 2.0 * away), 1.0)).xyz;
     vec2 seen = soft_visibility(shadow_depth, at, rise_of(shadow_matrix, flat_n), ivec4(ivec2(0), textureSize(shadow_depth, 0)),
-                                key_direction.w, max(1.6 * shadow.x, 0.75 * apart) / shadow.y, turn, needed ? 4 : 0, 8);
+                                key_direction.w, max(2.0 * shadow.x, 0.75 * apart) / shadow.y, turn, needed ? 4 : 0, 8);
 #ifdef QUADS
     // Edges that are sharper than two pixels stay so, and those where the four see all and nothing.
     vec2 across = abs(dFdx(at.xy)) + abs(dFdy(at.xy));

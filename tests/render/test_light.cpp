@@ -130,6 +130,56 @@ TEST_CASE("GL_no_light_comes_through_a_cloth_close_above") {
     }
 }
 
+TEST_CASE("GL_the_edge_of_a_near_shadow_is_straight_where_its_caster_is") {
+    const auto context = testing::open_renderer();
+    if (!context) return;
+    // A sheet close above another, askew to pixels and to the map's texels, of two pixels each. Its shadow's
+    // edge is found in each row as the place that divides its light, and lies on a line within half a pixel.
+    DrawScene scene = empty_scene({0, 0, 0});
+    DrawFrame frame;
+    scene.spacing = 0.02f;
+    add_sheet(scene, frame, 51, 1.2f, Vec3f(0, 0, 0));
+    const std::size_t below = frame.positions.size();
+    add_sheet(scene, frame, 31, 0.6f, Vec3f(0, 0.02f, 0));
+    const Eigen::AngleAxisf askew(0.3f, Vec3f::UnitY());
+    for (std::size_t p = below; p < frame.positions.size(); ++p)
+        frame.positions[p] = askew * frame.positions[p];
+    scene.key_direction = {0.9f, 1, 0};
+    scene.bounds_low = {-0.6f, 0, -0.6f};
+    scene.bounds_high = {0.6f, 0.02f, 0.6f};
+    // Its middle is where the left side of the upper sheet casts its shadow.
+    const Vec3f middle = askew * Vec3f(-0.3f, 0, 0) - Vec3f(0.018f, 0, 0);
+    frame.camera = {
+        .position = middle + Vec3f(0, 0.5f, 0.001f), .target = middle, .up = {0, 0, -1}, .fov = 10};
+    const Image image = drawn(*context, scene, frame, {.width = 120, .height = 120});
+    std::vector<double> edge;
+    for (int y = 30; y < 90; ++y) {
+        // From the lit side to the darkest.
+        double bright = image.at(20, y)[1], dark = 255, sum = 0;
+        int to = 20;
+        for (int x = 20; x < 100; ++x)
+            if (image.at(x, y)[1] < dark) dark = image.at(x, y)[1], to = x;
+        for (int x = 20; x < to; ++x) sum += (image.at(x, y)[1] - dark) / (bright - dark);
+        REQUIRE(bright - dark > 40);
+        edge.push_back(20 + sum);
+    }
+    // Residuals of the least-squares line.
+    const double n = static_cast<double>(edge.size());
+    double mean = 0, slope = 0, squares = 0, off = 0;
+    for (const double x : edge) mean += x / n;
+    for (std::size_t k = 0; k < edge.size(); ++k) {
+        const double row = static_cast<double>(k) - (n - 1) / 2;
+        slope += row * edge[k];
+        squares += row * row;
+    }
+    slope /= squares;
+    for (std::size_t k = 0; k < edge.size(); ++k)
+        off += std::pow(edge[k] - mean - slope * (static_cast<double>(k) - (n - 1) / 2), 2) / n;
+    INFO("mean " << mean << ", slope " << slope << ", off by " << std::sqrt(off));
+    CHECK(std::abs(slope) == Approx(std::tan(0.3)).epsilon(0.1));
+    CHECK(std::sqrt(off) < 0.5);
+}
+
 TEST_CASE("GL_a_cloth_does_not_shade_itself_where_nothing_is_above") {
     const auto context = testing::open_renderer();
     if (!context) return;
