@@ -116,6 +116,7 @@ void bend_jacobians(const BendSprings& springs, const BendLimit& limit, std::spa
     parallel_each(springs.size(), [&](std::size_t s) {
         out.forces.transverse[s] = 0;
         out.forces.state[s] = SpringState::inactive;
+        stiffness[s] = 0;
         if (out.forces.force[s].isZero(0)) return;
         const Vec3 d = x[springs.j[s]] - x[springs.i[s]];
         const double length = d.norm();

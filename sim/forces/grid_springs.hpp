@@ -46,4 +46,9 @@ struct GridSprings {
     }
 };
 
+/// Whether the grid's arcs join neighbours along threads.
+inline bool arcs_between_neighbours(const GridSprings& grid) {
+    return grid.bend_u.to[0] == 1 || grid.bend_v.to[1] == 1;
+}
+
 }  // namespace unravel::sim

@@ -48,10 +48,22 @@ struct Stencils {
     bool is_implicit(std::size_t s) const { return state.empty() || state[s] == SpringState::implicit; }
 };
 
+struct CurvatureStencils;
+
+/// What of a step's couplings is the cloths' own bending, for solvers that know it by the places on a grid.
+struct BendCouplings {
+    const CurvatureStencils* stencils = nullptr;
+    std::span<const std::uint8_t> is_implicit;  ///< (curvature stencils)
+    std::size_t arcs = 0;                       ///< Couplings::springs[arcs] are the bend springs
+    std::size_t list = none;                    ///< Couplings::stencils[list] are those of `stencils`
+    static constexpr std::size_t none = static_cast<std::size_t>(-1);
+};
+
 /// All that couples the particles of a step to each other.
 struct Couplings {
     std::span<const SpringFamily> springs;
     std::span<const Stencils> stencils{};
+    const BendCouplings* bending = nullptr;  ///< null: nothing bends implicitly
 };
 
 }  // namespace unravel::sim

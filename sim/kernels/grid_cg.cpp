@@ -87,9 +87,18 @@ struct GridCg {
                 }
             }
         }
+        const double* b = system.b.data();
+        if (g.bends) {
+            ws.bent.resize(system.field(3));
+            sweep([&](int begin, int end) {
+                kernels.bending.take_in_double(g, begin, end, b, system.x.data(), ws.bent.data(),
+                                               scratch<double>());
+            });
+            b = ws.bent.data();
+        }
         return sweep([&](int begin, int end) {
-            kernels.sweep.residual(g, begin, end, system.b.data(), system.x.data(), system.P.data(),
-                                   ws.r.data(), ws.dots.data(), scratch<double>());
+            kernels.sweep.residual(g, begin, end, b, system.x.data(), system.P.data(), ws.r.data(),
+                                   ws.dots.data(), scratch<double>());
         });
     }
 
@@ -107,9 +116,13 @@ struct GridCg {
         const float *const z = ws.z.data(), *const p = ws.p[static_cast<std::size_t>(side)].data();
         side ^= 1;
         float* const p_next = ws.p[static_cast<std::size_t>(side)].data();
-        return sweep([&](int begin, int end) {
+        const double of_springs = sweep([&](int begin, int end) {
             kernels.sweep.direction(g, begin, end, static_cast<float>(beta), z, p, p_next, ws.q.data(),
                                     ws.dots.data(), scratch<float>());
+        });
+        if (!g.bends) return of_springs;
+        return sweep([&](int begin, int end) {
+            kernels.bending.add(g, begin, end, p_next, ws.q.data(), ws.dots.data(), scratch<float>());
         });
     }
     double measure(double alpha) {

@@ -14,6 +14,7 @@ struct GridCgWorkspace {
     std::vector<float> r, z, q, d;
     std::array<std::vector<float>, 2> p;
     std::vector<double> dots;  ///< (grid rows)
+    std::vector<double> bent;  ///< b − K x of bending; empty: none
     int nu = 0, nv = 0;        ///< the grid that they were made for
     LineMultigrid multigrid;
 };

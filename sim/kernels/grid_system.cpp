@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "sim/forces/curvature.hpp"
 #include "sim/rows/couple_row.hpp"
 
 namespace unravel::sim {
@@ -31,6 +32,7 @@ struct Loader {
     const Constraints& constraints;
     std::span<const Vec3> guess;
     double h;
+    const GridBending& bending;
     GridSystem& out;
     int nu, pitch;
     std::int32_t label;
@@ -45,6 +47,11 @@ struct Loader {
 constexpr std::array<const SpringRows GridSprings::*, 4> families{&GridSprings::u, &GridSprings::v,
                                                                   &GridSprings::diagonal, &GridSprings::anti};
 
+// The arcs that lie along a family's springs; or null.
+const SpringRows* arcs_along(const GridSprings& grid, std::size_t family) {
+    return family > 1 || !arcs_between_neighbours(grid) ? nullptr : family == 0 ? &grid.bend_u : &grid.bend_v;
+}
+
 // Two rows at a time, one array per number, as kernels along rows want them; with the columns past a tube's
 // seam.
 class TransposedRows {
@@ -52,7 +59,7 @@ public:
     static constexpr std::size_t numbers = 11;  // x, drift, what springs pull by; ours, mass
     explicit TransposedRows(const Loader& l) : l_(l), stride_(static_cast<std::size_t>(l.nu) + 1) {
         thread_local std::vector<double> memory;
-        memory.resize(2 * (numbers + 1) * stride_);
+        memory.resize((2 * numbers + 3) * stride_);
         memory_ = memory.data();
     }
     void load(int j) {
@@ -74,7 +81,7 @@ public:
         return {{row(j, 0), row(j, 1), row(j, 2)}, {row(j, 3), row(j, 4), row(j, 5)}, row(j, 9), row(j, 10)};
     }
     Row pull(int j) const { return {row(j, 6), row(j, 7), row(j, 8)}; }
-    // For a row of springs' coefficients: two.
+    // For a row of springs' coefficients: three.
     double* coefficients(std::size_t which) const { return memory_ + (2 * numbers + which) * stride_; }
     bool any_held(int j) const { return held_[j & 1]; }
     // What the column past the seam got is the first one's.
@@ -94,19 +101,24 @@ private:
 };
 
 // What neighbours that are held, and move as they must, put into the right-hand side of ours.
-void add_held(const Loader& l, const SpringRows& rows, int j, TransposedRows& transposed) {
+void add_held(const Loader& l, const SpringRows& rows, const double* arcs, int j,
+              TransposedRows& transposed) {
     const int from_i = static_cast<int>(rows.from[0]), to_i = static_cast<int>(rows.to[0]);
     const int other_j = j + static_cast<int>(rows.to[1]);
     for (std::uint32_t k = 0; k < rows.per_row; ++k) {
         const int i = static_cast<int>(k) + from_i, other_i = static_cast<int>(k) + to_i;
         const std::uint32_t p = l.out.particle(i % l.nu, j), q = l.out.particle(other_i % l.nu, other_j);
         const std::uint32_t s = rows.at(k, static_cast<std::uint32_t>(l.first_row + j));
-        if (l.ours(p) == l.ours(q) || l.family.forces->state[s] != SpringState::implicit) continue;
+        const bool implicit = l.family.forces->state[s] == SpringState::implicit;
+        const double of_arc = arcs ? arcs[k] : 0.0;
+        if (l.ours(p) == l.ours(q) || (!implicit && of_arc == 0)) continue;
         const std::uint32_t held = l.ours(p) ? q : p;
         if (l.components.label[held] >= 0) continue;
-        const auto [u, t] = line_of(l.family, s);
-        const double stiffness = l.family.springs->stiffness[s];
-        const double scale = l.h * l.h * (stiffness - t) + l.h * l.family.springs->damping[s];
+        const SpringLine line = line_of(l.family, s);
+        const Vec3& u = line.u;
+        const double on = implicit ? 1.0 : 0.0, t = on * line.t;
+        const double along = on * l.family.springs->stiffness[s] - t + of_arc;
+        const double scale = l.h * l.h * along + l.h * on * l.family.springs->damping[s];
         const Vec3& z = l.constraints.find(held)->z;
         const Vec3 pull = l.h * l.h * t * z + scale * u.dot(z) * u;
         const Row to = from(transposed.pull(l.ours(p) ? j : other_j), l.ours(p) ? i : other_i);
@@ -128,16 +140,64 @@ double couple(const Loader& l, int j, bool ours, TransposedRows& transposed) {
                    to_i = static_cast<std::ptrdiff_t>(rows.to[0]);
         const std::uint32_t s = rows.at(0, static_cast<std::uint32_t>(l.first_row + j));
         float* const blocks = l.out.couplings.data() + l.at(0, j, 16) + 4 * static_cast<int>(f) * l.pitch;
-        const double most =
-            couple_row(transposed.end(j).from(from_i), transposed.end(j + down).from(to_i), springs.rest[s],
-                       springs.stiffness.run(s, rows.per_row, transposed.coefficients(0)),
-                       springs.damping.run(s, rows.per_row, transposed.coefficients(1)),
-                       l.family.forces->state.data() + s, l.h, rows.per_row, from(transposed.pull(j), from_i),
-                       from(transposed.pull(j + down), to_i), ours ? blocks : nullptr, l.pitch);
+        const SpringRows* const along = l.bending.arcs ? arcs_along(l.springs, f) : nullptr;
+        const double* const arcs =
+            along && along->count() > 0
+                ? l.bending.arcs->stiffness.run(along->at(0, static_cast<std::uint32_t>(l.first_row + j)),
+                                                rows.per_row, transposed.coefficients(2))
+                : nullptr;
+        const double most = couple_row(
+            transposed.end(j).from(from_i), transposed.end(j + down).from(to_i), springs.rest[s],
+            springs.stiffness.run(s, rows.per_row, transposed.coefficients(0)),
+            springs.damping.run(s, rows.per_row, transposed.coefficients(1)),
+            l.family.forces->state.data() + s, arcs, l.h, rows.per_row, from(transposed.pull(j), from_i),
+            from(transposed.pull(j + down), to_i), ours ? blocks : nullptr, l.pitch);
         stiffest = std::max(stiffest, most);
-        if (transposed.any_held(j) || transposed.any_held(j + down)) add_held(l, rows, j, transposed);
+        if (transposed.any_held(j) || transposed.any_held(j + down)) add_held(l, rows, arcs, j, transposed);
     }
     return stiffest;
+}
+
+// Bending's stencils through each node: along u, along v, and the twist. Those that are implicit and have a
+// node of ours; in single precision, as everything that A is made of. The largest over the mass of its
+// middle.
+double load_bends(const Loader& l, int j) {
+    const GridSprings& grid = l.springs;
+    const int row = l.first_row + j;
+    double stiffest = 0;
+    const auto put = [&](int which, const SpringRows& rows, int i, int base, int base_row) {
+        float& to = l.out.bends[static_cast<std::size_t>(l.at(i, j, 3) + which * l.pitch)];
+        to = 0;
+        if (grid.tube) base = (base + l.nu) % l.nu;
+        if (base < 0 || base >= static_cast<int>(rows.per_row) || base_row < 0 ||
+            base_row >= static_cast<int>(rows.rows))
+            return;
+        const std::uint32_t s =
+            rows.at(static_cast<std::uint32_t>(base), static_cast<std::uint32_t>(base_row));
+        const std::array<std::uint32_t, 4>& p = l.bending.stencils->p[s];
+        if (l.bending.is_implicit[s] == 0 || !std::ranges::any_of(p, [&](auto q) { return l.ours(q); }))
+            return;
+        const double c = l.h * l.h * l.bending.stencils->stiffness[s];
+        to = static_cast<float>(c);
+        stiffest = std::max(stiffest, 4 * c / l.load.mass[p[1]]);
+    };
+    for (int i = 0; i < l.nu; ++i) {
+        put(0, grid.curve_u, i, i - 1, row);
+        put(1, grid.curve_v, i, i, row - 1);
+        put(2, grid.twist, i, i, row);
+    }
+    return stiffest;
+}
+
+// What bending pulls by without the solve is K (g/h), and held neighbours move as they must: K s in all, s =
+// g/h + z of the held.
+void load_shift(const Loader& l, int j, std::vector<double>& shift) {
+    for (int i = 0; i < l.nu; ++i) {
+        const std::uint32_t p = l.out.particle(i, j);
+        Vec3 s = l.load.drift[p] / l.h;
+        if (l.components.label[p] < 0) s += l.constraints.find(p)->z;
+        for (int k = 0; k < 3; ++k) shift[static_cast<std::size_t>(l.at(i, j, 3) + k * l.pitch)] = s[k];
+    }
 }
 
 // What nodes have by themselves.
@@ -183,7 +243,11 @@ double load_rows(const Loader& l, int begin, int end) {
     for (int j = before; j < end; ++j) {
         if (j + 1 < l.out.grid.nv) transposed.load(j + 1);
         stiffest = std::max(stiffest, couple(l, j, j >= begin, transposed));
-        if (j >= begin) load_nodes(l, j, transposed);
+        if (j < begin) continue;
+        load_nodes(l, j, transposed);
+        if (!l.bending.any()) continue;
+        stiffest = std::max(stiffest, load_bends(l, j));
+        load_shift(l, j, l.out.shift);
     }
     return stiffest;
 }
@@ -205,13 +269,14 @@ RowBands::RowBands(const StencilGrid& g, int at_least) : all(g.nv) {
 
 void load_grid_system(const GridSprings& springs, const SpringFamily& family, const Load& load,
                       const Components& components, std::uint32_t c, const Constraints& constraints,
-                      std::span<const Vec3> guess, double h, GridSystem& out) {
+                      std::span<const Vec3> guess, double h, GridSystem& out, const GridBending& bending) {
     const std::uint32_t begin = components.start[c], end = components.start[c + 1];
     // With the rows next to it, which may hold neighbours that are held.
+    const std::uint32_t reach = bending.any() ? 2 : 1;
     const std::uint32_t top = (components.order[begin] - springs.particle) / springs.nu;
     const std::uint32_t bottom = (components.order[end - 1] - springs.particle) / springs.nu;
-    const std::uint32_t first_row = top > 0 ? top - 1 : top;
-    const std::uint32_t last_row = bottom + 1 < springs.nv ? bottom + 1 : bottom;
+    const std::uint32_t first_row = top - std::min(top, reach);
+    const std::uint32_t last_row = std::min(bottom + reach, springs.nv - 1);
     StencilGrid& g = out.grid;
     const StencilGrid before = g;
     const std::uint32_t first_before = out.first_particle;
@@ -234,6 +299,10 @@ void load_grid_system(const GridSprings& springs, const SpringFamily& family, co
         out.P.assign(out.field(6), 0.0f);
     }
     out.slot.assign(out.field(1), masked_slot);
+    if (bending.any()) {
+        out.bends.assign(out.field(3), 0.0f);
+        out.shift.assign(out.field(3), 0.0);
+    }
     const Loader loader{springs,
                         family,
                         load,
@@ -241,6 +310,7 @@ void load_grid_system(const GridSprings& springs, const SpringFamily& family, co
                         constraints,
                         guess,
                         h,
+                        bending,
                         out,
                         g.nu,
                         g.pitch,
@@ -268,6 +338,7 @@ void load_grid_system(const GridSprings& springs, const SpringFamily& family, co
     g.self = out.mass.data();
     g.slot = out.slot.data();
     g.directions = out.directions.data();
+    g.bends = bending.any() ? out.bends.data() : nullptr;
     const auto implicit_in = [&](const SpringRows& rows) {
         const auto first = family.forces->state.begin() + rows.first;
         return std::find(first, first + rows.count(), SpringState::implicit) != first + rows.count();
@@ -276,6 +347,13 @@ void load_grid_system(const GridSprings& springs, const SpringFamily& family, co
     const StencilKernels& kernels = stencil_kernels();
     tbb::parallel_for(0, bands.count, [&](int band) {
         kernels.sweep.diagonal[0](g, bands.begin(band), bands.end(band), out.D.data());
+        if (g.bends) {
+            thread_local std::vector<double> scratch;
+            scratch.resize(sweep_scratch_rows * static_cast<std::size_t>(g.pitch));
+            kernels.bending.take_in_double(g, bands.begin(band), bands.end(band), out.b.data(),
+                                           out.shift.data(), out.b.data(), scratch.data());
+            kernels.bending.diagonal[0](g, bands.begin(band), bands.end(band), out.D.data());
+        }
         kernels.line.invert(g, bands.begin(band), bands.end(band), out.D.data(), out.P.data());
     });
 }

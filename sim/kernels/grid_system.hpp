@@ -10,6 +10,8 @@
 
 namespace unravel::sim {
 
+struct CurvatureStencils;
+
 /// A component's system A Δv = b (Eq. 5) on the rows of the grid that it covers, never assembled: a spring is
 /// a I + w wᵀ, four floats,
 ///   a = h² t,   w = √(h² (k_s − t) + h k_d) û,
@@ -29,7 +31,9 @@ struct GridSystem {
     std::vector<float> active;  ///< (1 number per node) 1, or 0 where masked; rings closed
     std::vector<std::int32_t> slot;
     std::vector<double> directions;
-    std::vector<double> b, x;  ///< fields of 3; x starts as S y + (I − S) z and ends as the solution
+    std::vector<float> bends;   ///< (3 numbers per node) as StencilGrid has them; empty: none
+    std::vector<double> shift;  ///< field of 3, scratch of bending
+    std::vector<double> b, x;   ///< fields of 3; x starts as S y + (I − S) z and ends as the solution
     std::uint32_t particle(int i, int j) const {
         return first_particle + static_cast<std::uint32_t>(j) * static_cast<std::uint32_t>(grid.nu) +
                static_cast<std::uint32_t>(i);
@@ -45,10 +49,20 @@ struct RowBands {
     int end(int band) const { return begin(band) + rows < all ? begin(band) + rows : all; }
 };
 
+/// Implicit bending of cloth on grids (sim/forces/curvature.hpp). Arcs between neighbours lie along the
+/// threads' springs, and are part of their blocks.
+struct GridBending {
+    const CurvatureStencils* stencils = nullptr;
+    std::span<const std::uint8_t> is_implicit;  ///< (stencils)
+    const ExtensionSprings* arcs = nullptr;  ///< stiffness: the push's slope, 0 where there is none; or null
+    bool any() const { return stencils && !is_implicit.empty(); }
+};
+
 /// Fills `out` with component c, whose particles all belong to `springs`; the family says where its springs
-/// are linearised (`at`). `guess` is (particles) [m/s].
+/// are linearised (`at`), and arcs likewise. `guess` is (particles) [m/s].
 void load_grid_system(const GridSprings& springs, const SpringFamily& family, const Load& load,
                       const Components& components, std::uint32_t c, const Constraints& constraints,
-                      std::span<const Vec3> guess, double h, GridSystem& out);
+                      std::span<const Vec3> guess, double h, GridSystem& out,
+                      const GridBending& bending = {});
 
 }  // namespace unravel::sim

@@ -73,6 +73,13 @@ void LineMultigrid::build(const GridSystem& system) {
     if (levels_.empty()) levels_.emplace_back();
     levels_[0].grid = system.grid;
     levels_[0].diagonal = system.D.data();
+    if (system.grid.bends) {
+        levels_[0].D = system.D;
+        levels_[0].diagonal = levels_[0].D.data();
+        over_bands(system.grid, [&](int begin, int end) {
+            kernels.bending.diagonal[1](system.grid, begin, end, levels_[0].D.data());
+        });
+    }
     set_up(levels_[0], 0);
     depth_ = 1;
     const float* active = system.active.data();
@@ -106,7 +113,18 @@ void LineMultigrid::build(const GridSystem& system) {
                                              coarse.couplings.data(), coarse.self.data(), coarse.slot.data(),
                                              coarse.active.data());
         });
-        over_bands(g, [&](int begin, int end) { kernels.sweep.diagonal[1](g, begin, end, coarse.D.data()); });
+        if (fine.grid.bends) {
+            coarse.bends.assign(field(g, 3), 0.0f);
+            over_bands(g, [&](int begin, int end) {
+                kernels.bending.coarsen(fine.grid, g, begin, end, coarse.bends.data(), coarse.self.data());
+            });
+            g.bends = coarse.bends.data();
+        }
+        over_bands(g, [&](int begin, int end) {
+            kernels.sweep.diagonal[1](g, begin, end, coarse.D.data());
+            for (const auto& diagonal : kernels.bending.diagonal)
+                if (g.bends) diagonal(g, begin, end, coarse.D.data());
+        });
         coarse.diagonal = coarse.D.data();
         set_up(coarse, 1);
         active = coarse.active.data();
@@ -152,6 +170,11 @@ void LineMultigrid::find_defect(Level& level, int kind, const float* r, float* z
     over_bands(g, [&](int begin, int end) {
         kernels.sweep.defect[kind](g, begin, end, r, z, level.t.data(),
                                    scratch(sweep_scratch_rows * static_cast<std::size_t>(g.pitch)));
+    });
+    if (!g.bends) return;
+    over_bands(g, [&](int begin, int end) {
+        kernels.bending.take(g, begin, end, z, level.t.data(),
+                             scratch(sweep_scratch_rows * static_cast<std::size_t>(g.pitch)));
     });
 }
 

@@ -20,6 +20,10 @@ namespace unravel::sim {
 /// since every spring puts (p_a + p_b)ᵀ B (p_a + p_b) ≥ 0 into it. P is bilinear. A coarse coupling is the
 /// sum of the fine ones that cross between two aggregates, halved for the doubled distance; a node's own
 /// block sums masses, what springs to masked nodes hold it with, and c (I − S) for partly constrained ones.
+///
+/// Bending that is linear in curvature has no place in a line's blocks. Lines hold it as a diagonal of half
+/// the sum of its entries' sizes, of which L + N is positive definite again; defects have the whole of it on
+/// every level.
 class LineMultigrid {
 public:
     /// Sets up for `system`, which must outlive the use.
@@ -30,7 +34,7 @@ public:
 private:
     struct Level {
         StencilGrid grid;
-        std::vector<float> couplings, self, active, D, lines_u, lines_v;
+        std::vector<float> couplings, self, active, D, bends, lines_u, lines_v;
         std::vector<std::int32_t> slot;
         std::vector<float> r, z, t;
         const float* diagonal = nullptr;

@@ -25,6 +25,10 @@ struct StencilGrid {
         nullptr;  ///< (1 number per node) free, masked, or the number of its directions
     const double* directions =
         nullptr;  ///< (partly constrained, 6) its free directions, unit; the second or 0
+    /// (3 numbers per node) bending that is linear in curvature (sim/forces/curvature.hpp), h² c [kg]: of the
+    /// curvature along u and along v through a node, and of the twist of the cell whose upper left it is;
+    /// zero where it leaves the grid. Null: none.
+    const float* bends = nullptr;
     int columns() const { return (nu + 7) / 8 * 8; }
 };
 
@@ -32,7 +36,7 @@ struct StencilGrid {
 inline constexpr std::int32_t free_slot = -1, masked_slot = -2;
 
 /// Scratch of a sweep over a band of rows: rows of `pitch` floats, or doubles for the residual.
-inline constexpr int sweep_scratch_rows = 18;
+inline constexpr int sweep_scratch_rows = 21;
 
 // The inner loops of the grid solver. Each works on rows [begin, end) of a grid, or columns, and writes
 // nothing else; sums are per row, so that the way the grid is cut into bands changes no bit. Of two entries
@@ -83,6 +87,25 @@ struct TransferKernels {
     void (*close_rings)(const StencilGrid&, int begin, int end, float* z);
 };
 
+/// K, the part of A that bending has (StencilGrid::bends): sweeps of their own, after those of SweepKernels.
+struct BendKernels {
+    /// q += S K p, dots[j] += p·K p of row j; p = S p.
+    void (*add)(const StencilGrid&, int begin, int end, const float* p, float* q, double* dots,
+                float* scratch);
+    /// t −= S K z
+    void (*take)(const StencilGrid&, int begin, int end, const float* z, float* t, float* scratch);
+    /// out = b − K x, in double; out may be b.
+    void (*take_in_double)(const StencilGrid&, int begin, int end, const double* b, const double* x,
+                           double* out, double* scratch);
+    /// D += the blocks of K on its diagonal; or what half the sum of the sizes of a row's entries is beyond
+    /// that: with it the diagonal alone, taken twice, is no less than K. 6 numbers per node.
+    void (*diagonal[2])(const StencilGrid&, int begin, int end, float* D);
+    /// Of the grid of 2 × 2 aggregates: its bends, a quarter of the mean of four for the doubled distance;
+    /// and what masked nodes hold an aggregate with by bending, to its own block.
+    void (*coarsen)(const StencilGrid& fine, const StencilGrid& coarse, int begin, int end, float* bends,
+                    float* self);
+};
+
 struct CoarsenKernels {
     /// Rows [begin, end) of the grid of 2 × 2 aggregates of `fine`: couplings (24 numbers per node), own
     /// blocks (6), slots and what is active (1 or 0). D is the fine grid's diagonal. A coarse coupling is
@@ -99,6 +122,7 @@ struct StencilKernels {
     const LineKernels& line;
     const TransferKernels& transfer;
     const CoarsenKernels& coarsening;
+    const BendKernels& bending;
 };
 
 /// The best that this machine runs.

@@ -7,15 +7,18 @@ namespace unravel::sim {
 
 namespace {
 
-// f(entry, particle) for each particle that has a part in an implicit stencil, in order.
+// f(entry, particle) for each wanted particle that has a part in an implicit stencil, in order. Of an empty
+// `wanted` (particles) all are.
 template <typename F>
-void each_part(std::span<const Stencils> lists, const F& f) {
+void each_part(std::span<const Stencils> lists, std::span<const std::uint8_t> wanted, const F& f) {
     for (std::uint32_t list = 0; list < lists.size(); ++list) {
         for (std::uint32_t s = 0; s < lists[list].list.size(); ++s) {
             if (!lists[list].is_implicit(s)) continue;
             const Stencil& stencil = lists[list].list[s];
             for (std::uint32_t slot = 0; slot < stencil.count; ++slot) {
-                if (stencil.w[slot] != 0) f(StencilIndex::Entry{list, s, slot}, stencil.p[slot]);
+                const std::uint32_t p = stencil.p[slot];
+                if (stencil.w[slot] != 0 && (wanted.empty() || wanted[p] != 0))
+                    f(StencilIndex::Entry{list, s, slot}, p);
             }
         }
     }
@@ -23,11 +26,11 @@ void each_part(std::span<const Stencils> lists, const F& f) {
 
 void index_stencils(std::span<const Stencils> lists, std::size_t particles, StencilIndex& out) {
     out.start.assign(particles + 1, 0);
-    each_part(lists, [&](const StencilIndex::Entry&, std::uint32_t p) { ++out.start[p]; });
+    each_part(lists, out.wanted, [&](const StencilIndex::Entry&, std::uint32_t p) { ++out.start[p]; });
     std::uint32_t place = 0;
     for (std::uint32_t& start : out.start) place += std::exchange(start, place);
     out.entries.resize(place);
-    each_part(lists, [&](const StencilIndex::Entry& entry, std::uint32_t p) {
+    each_part(lists, out.wanted, [&](const StencilIndex::Entry& entry, std::uint32_t p) {
         out.entries[out.start[p]++] = entry;
     });
     // Dealing moved every start to the next one's.
@@ -50,6 +53,15 @@ void assemble_stencils(std::span<const Stencils> lists, const Load& load, const 
     out.block_start.clear();
     if (lists.empty()) return;
     const std::size_t n = load.mass.size();
+    const auto made = [&](std::size_t row, std::uint32_t p) {
+        return solved_in(out, components, row) || constraints.find(p);
+    };
+    std::vector<std::uint8_t>& wanted = out.stencils_of.wanted;
+    wanted.resize(out.elsewhere.empty() ? 0 : n);
+    parallel_each(wanted.size(), [&](std::size_t row) {
+        const std::uint32_t p = components.order[row];
+        wanted[p] = made(row, p);
+    });
     index_stencils(lists, n, out.stencils_of);
     const StencilIndex& index = out.stencils_of;
     if (index.entries.empty()) return;
@@ -57,9 +69,6 @@ void assemble_stencils(std::span<const Stencils> lists, const Load& load, const 
     const std::uint32_t solved = components.start.back();
     const auto of = [&](std::uint32_t p) {
         return std::span(index.entries).subspan(index.start[p], index.start[p + 1] - index.start[p]);
-    };
-    const auto made = [&](std::size_t row, std::uint32_t p) {
-        return solved_in(out, components, row) || constraints.find(p);
     };
     const auto moved_to_b = [&](std::uint32_t row, std::uint32_t other) {
         return row < solved && out.row_of[other] >= solved;

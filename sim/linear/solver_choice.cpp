@@ -23,7 +23,7 @@ const char* words(SolveReason reason) {
         "solver.preconditioner or solver.tolerance asks for it",
         "it has few rows",
         "it is no part of one grid",
-        "more than a grid's springs couples it",
+        "more than a grid's springs and stencils couples it",
         "it covers little of its rows of the grid",
         "it is a large part of one grid",
         "the other would need many iterations",

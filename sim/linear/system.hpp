@@ -22,6 +22,7 @@ struct StencilIndex {
     std::vector<std::uint32_t> start;    ///< (particles + 1) of `entries`
     std::vector<Entry> entries;          ///< each particle's in the order of lists and stencils
     std::vector<std::uint32_t> columns;  ///< (3 × entries) of the rows' blocks
+    std::vector<std::uint8_t> wanted;    ///< (particles) 0: no row is made of it here; empty: all are
 };
 
 /// A Δv = b of one step, rows in the order of its components, so that A is block diagonal (paper Fig. 5):

@@ -9,10 +9,10 @@
 namespace unravel::sim {
 
 UNRAVEL_VERSIONS double couple_row(const RowEnd& a, const RowEnd& b, double rest, const double* stiffness,
-                                   const double* damping, const SpringState* state, double h,
-                                   std::size_t count, const Row& fa, const Row& fb, float* blocks,
+                                   const double* damping, const SpringState* state, const double* arcs,
+                                   double h, std::size_t count, const Row& fa, const Row& fb, float* blocks,
                                    std::ptrdiff_t pitch) {
-    double force[3][strip];
+    double force[3][strip], of_arc[strip] = {};
     float block[4][strip], square[strip], lightest[strip];
     std::int64_t implicit[strip];
     const auto [ax, ay, az] = a.x;
@@ -28,6 +28,12 @@ UNRAVEL_VERSIONS double couple_row(const RowEnd& a, const RowEnd& b, double rest
             implicit[k] = state[first + k] == SpringState::implicit;
             any |= implicit[k];
         }
+        if (arcs) {
+            for (std::size_t k = 0; k < n; ++k) {
+                of_arc[k] = arcs[first + k];
+                any |= of_arc[k] != 0;
+            }
+        }
         if (any == 0) {
             for (std::ptrdiff_t c = 0; blocks && c < 4; ++c) std::fill_n(blocks + c * pitch + first, n, 0.0f);
             continue;
@@ -38,9 +44,10 @@ UNRAVEL_VERSIONS double couple_row(const RowEnd& a, const RowEnd& b, double rest
             const double squared = std::max(dx * dx + dy * dy + dz * dz, least_square);
             const double r = inverse_root(squared);
             const double ux = dx * r, uy = dy * r, uz = dz * r;
-            const double on = (implicit[k] != 0) & (a.ours[i] + b.ours[i] > 0) ? 1.0 : 0.0;
+            const double of_ours = a.ours[i] + b.ours[i] > 0 ? 1.0 : 0.0;
+            const double on = implicit[k] != 0 ? of_ours : 0.0;
             const double t = transverse_stiffness(on * stiffness[i], rest * r);
-            const double along = on * stiffness[i] - t;
+            const double along = on * stiffness[i] - t + of_ours * of_arc[k];
             const double scale = hh * along + h * on * damping[i];
             block[0][k] = static_cast<float>(hh * t);
             block[1][k] = static_cast<float>(ux);

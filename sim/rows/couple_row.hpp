@@ -24,10 +24,11 @@ struct RowEnd {
 /// (sim/kernels/grid_system.hpp), zero where a spring is not implicit or of no particle of ours; and what the
 /// springs pull by without the solve, h K (g_b − g_a), added to fa and taken from fb [kg·m/s].
 ///   stiffness, damping, state  (springs)
+///   arcs    (springs) slope of the push of an arc between the same ends, implicit too [N/m]; or null
 ///   blocks  number k of block i at [k·pitch + i]; or null
 /// Returns the largest coupling over the lighter end's mass.
 double couple_row(const RowEnd& a, const RowEnd& b, double rest, const double* stiffness,
-                  const double* damping, const SpringState* state, double h, std::size_t count, const Row& fa,
-                  const Row& fb, float* blocks, std::ptrdiff_t pitch);
+                  const double* damping, const SpringState* state, const double* arcs, double h,
+                  std::size_t count, const Row& fa, const Row& fb, float* blocks, std::ptrdiff_t pitch);
 
 }  // namespace unravel::sim

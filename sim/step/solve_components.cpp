@@ -24,22 +24,50 @@ const GridSprings* grid_of(std::span<const GridSprings> grids, std::uint32_t par
     return nullptr;
 }
 
-// Which components have what is in no grid's own springs: those between cloth that touches itself, stitches,
-// bend springs, and stencils.
-void mark_beyond_grids(const Couplings& couplings, const Components& components,
-                       std::vector<std::uint8_t>& beyond) {
+// f(s) for those of `count` bend springs that are no arcs between a grid's neighbours.
+template <typename F>
+void each_bend_beyond(std::span<const GridSprings> grids, std::size_t count, const F& f) {
+    std::size_t next = 0;
+    const auto until = [&](std::size_t end) {
+        for (; next < end; ++next) f(next);
+    };
+    for (const GridSprings& grid : grids) {
+        if (!arcs_between_neighbours(grid)) continue;
+        for (const SpringRows* rows : {&grid.bend_u, &grid.bend_v}) {
+            if (rows->count() == 0) continue;
+            until(rows->first);
+            next += rows->count();
+        }
+    }
+    until(count);
+}
+
+// Which components have what is on no grid: springs between cloth that touches itself, stitches, arcs over
+// two cells, and stencils but for bending's.
+void mark_beyond_grids(std::span<const GridSprings> grids, const Couplings& couplings,
+                       const Components& components, std::vector<std::uint8_t>& beyond) {
     beyond.assign(components.count(), 0);
     const auto mark = [&](std::uint32_t p) {
         if (components.label[p] >= 0) beyond[static_cast<std::size_t>(components.label[p])] = 1;
     };
-    for (const SpringFamily& family : couplings.springs.subspan(1)) {
-        for (std::size_t s = 0; s < family.forces->state.size(); ++s) {
-            if (family.forces->state[s] != SpringState::implicit) continue;
+    const BendCouplings* const bending = couplings.bending;
+    for (std::size_t k = 1; k < couplings.springs.size(); ++k) {
+        const SpringFamily& family = couplings.springs[k];
+        const auto mark_ends = [&](std::size_t s) {
+            if (family.forces->state[s] != SpringState::implicit) return;
             mark(family.springs->i[s]);
             mark(family.springs->j[s]);
+        };
+        const std::size_t count = family.forces->state.size();
+        if (bending && k == bending->arcs) {
+            each_bend_beyond(grids, count, mark_ends);
+        } else {
+            for (std::size_t s = 0; s < count; ++s) mark_ends(s);
         }
     }
-    for (const Stencils& stencils : couplings.stencils) {
+    for (std::size_t list = 0; list < couplings.stencils.size(); ++list) {
+        if (bending && list == bending->list) continue;
+        const Stencils& stencils = couplings.stencils[list];
         for (std::size_t s = 0; s < stencils.list.size(); ++s) {
             if (!stencils.is_implicit(s)) continue;
             const Stencil& stencil = stencils.list[s];
@@ -79,7 +107,7 @@ void plan_solves(const StepSystem& step, const SolveOptions& options, GridSolves
     plan.elsewhere.clear();
     plan.because.clear();
     if (!may_use_grids(options) || grids.empty()) return;
-    mark_beyond_grids(step.couplings, components, ws.beyond);
+    mark_beyond_grids(grids, step.couplings, components, ws.beyond);
     plan.because.resize(components.count());
     for (std::size_t c = 0; c < components.count(); ++c) {
         const GridSprings* const g = grid_of(grids, components.order[components.start[c]]);
@@ -153,12 +181,16 @@ void assemble_components(const StepSystem& step, const SolveOptions& options, Gr
     const SolvePlan& plan = grids.plan;
     while (grids.grids.size() < plan.on_grid.size())
         grids.grids.push_back(std::make_unique<GridSolves::Grid>());
+    GridBending bending;
+    if (const BendCouplings* const bends = step.couplings.bending)
+        bending = {bends->stencils, bends->is_implicit, step.couplings.springs[bends->arcs].springs};
     tbb::task_group giants;
     for (std::size_t k = 0; k < plan.on_grid.size(); ++k) {
         giants.run([&, k] {
-            load_grid_system(*plan.on_grid[k].springs, step.couplings.springs[0], step.load, step.components,
+            const GridSprings& grid = *plan.on_grid[k].springs;
+            load_grid_system(grid, step.couplings.springs[0], step.load, step.components,
                              plan.on_grid[k].component, step.constraints, step.guess, step.h,
-                             grids.grids[k]->system);
+                             grids.grids[k]->system, arcs_between_neighbours(grid) ? bending : GridBending{});
         });
     }
     assemble(step.couplings, step.load, step.components, step.constraints, step.h, rows, plan.elsewhere);

@@ -18,9 +18,9 @@ inline constexpr std::uint32_t least_rows_on_grid = 256;
 bool may_use_grids(const SolveOptions& options);
 
 /// What solves each component of a step: rows in double (sim/linear/solve.hpp), or, for a large one that lies
-/// on a grid and has no springs but the grid's and no stencils, the grid's own solver in single precision
-/// (sim/kernels/grid_cg.hpp). Chosen from the system alone,
-/// so that the same input gives the same bits.
+/// on a grid and has no springs but the grid's and no stencils but those of its bending, the grid's own
+/// solver in single precision (sim/kernels/grid_cg.hpp). Chosen from the system alone, so that the same input
+/// gives the same bits.
 struct SolvePlan {
     struct OnGrid {
         std::uint32_t component;

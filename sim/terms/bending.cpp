@@ -69,10 +69,15 @@ void add_bends(const ClothModel& model, const ForceMemory& memory, std::span<Vec
     add_curvature(model.curvature, own.parts, own.pull, force);
 }
 
-void couple_bends(const ClothModel&, const ForcesAt&, const ForceMemory& memory, StepCouplings& out) {
+void couple_bends(const ClothModel& model, const ForcesAt&, const ForceMemory& memory, StepCouplings& out) {
     const BendingMemory& own = memory.bending;
+    const bool curves = !own.split.implicit.empty();
+    if (own.is_implicit) {
+        out.bending = {&model.curvature, own.split.is_implicit, out.springs.size(),
+                       curves ? out.stencils.size() : BendCouplings::none};
+    }
     out.springs.push_back({&own.implicit.springs, &own.adjacency, &own.implicit.forces});
-    if (!own.split.implicit.empty()) out.stencils.push_back({own.split.implicit});
+    if (curves) out.stencils.push_back({own.split.implicit});
 }
 
 bool may_be_implicit(const ClothModel& model, const ForceSettings& settings) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,7 +49,8 @@ struct StepEnds {
 struct StepCouplings {
     std::vector<SpringFamily> springs;
     std::vector<Stencils> stencils;
-    operator Couplings() const { return {springs, stencils}; }
+    std::optional<BendCouplings> bending;
+    operator Couplings() const { return {springs, stencils, bending ? &*bending : nullptr}; }
 };
 
 /// A force that acts on the cloth: all that a step, its measures, the guard and `check` ask of it. A new one
