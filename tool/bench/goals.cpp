@@ -71,38 +71,6 @@ Goal growth(const SpeedBench& bench) {
     return goal;
 }
 
-// CPU seconds of a simulated second on one thread, as the fastest way to step has it.
-double seconds_per_second(const SizeRecord& size) {
-    double best = no_number;
-    for (const StepRecord& step : size.steps) {
-        if (step.threads == 1 && step.seconds.runs > 0 && !(best <= step.seconds.median / size.step))
-            best = step.seconds.median / size.step;
-    }
-    return best;
-}
-
-// NvCloth's, of the same sheet: CPU seconds and largest strain.
-Goal against_nvcloth(const SpeedBench& bench, double slower) {
-    struct Theirs {
-        double particles, seconds, strain;
-    };
-    constexpr Theirs theirs[] = {{1e4, 1.47, 0.012}, {4e4, 10.7, 0.023}};
-    Goal goal{"CPU seconds of a simulated second, a stiff sheet",
-              fmt::format("NvCloth's: {:.2f} at 10k, {:.1f} at 40k", theirs[0].seconds * slower,
-                          theirs[1].seconds * slower),
-              "", -1};
-    for (const Theirs& t : theirs) {
-        const SizeRecord* const size = near(bench, t.particles);
-        if (!size || !bench.like_peers) continue;
-        const double seconds = seconds_per_second(*size);
-        goal.reached +=
-            fmt::format("{}{:.2f} at {} (strain {:.1f}%, theirs {:.1f}%)", goal.reached.empty() ? "" : ", ",
-                        seconds, size_name(size->particles), 100 * size->max_strain, 100 * t.strain);
-        goal.met = goal.met != 0 && seconds <= t.seconds * slower && size->max_strain <= t.strain ? 1 : 0;
-    }
-    return goal;
-}
-
 // How much slower the integrator that chooses is than the best of those it may choose from.
 double auto_excess(const SizeRecord& size, int threads) {
     const Spread* chosen = step_time(size, "integrator auto", threads);
@@ -173,7 +141,6 @@ std::vector<Goal> judge_goals(const SpeedBench& bench) {
         "a step on two threads against one", "1.8 times faster", bench, std::span<const double>(two_to_40k),
         [](const SizeRecord& s) { return ratio(step_time(s, own_step, 1), step_time(s, own_step, 2)); }, 1.8,
         any, "{:.2f}"));
-    goals.push_back(against_nvcloth(bench, slower));
     return goals;
 }
 

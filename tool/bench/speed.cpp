@@ -25,14 +25,6 @@ constexpr int nodes_per_task = 2048;
 // A grid of no more nodes is the last of a multigrid (sim/kernels/line_multigrid.cpp).
 constexpr int coarsest_nodes = 32;
 
-bool is_peers_sheet(const Scene& scene) {
-    const Cloth& cloth = scene.cloths.front();
-    const Material& m = cloth.material;
-    // Springs of square cells: k = stretch along threads, 2·shear on diagonals.
-    return scene.solids.empty() && cloth.size == std::array<double, 2>{1, 1} && cloth.density == 0.2 &&
-           m.stretch == std::array<double, 2>{1000, 1000} && m.shear == 150;
-}
-
 int depth_of(int columns, int rows) {
     int depth = 1;
     for (; columns * rows > coarsest_nodes; ++depth) {
@@ -167,7 +159,6 @@ SpeedBench measure_speed(const SpeedPlan& plan) {
     // A scene that can't be refined is told of before anything is measured.
     const Scene scene = scene_of_size(plan.scene, plan.overrides, plan.sizes.front());
     bench.scene = scene.name;
-    bench.like_peers = is_peers_sheet(scene);
     plan.tell("triad");
     bench.memory_triad = {triad(triad_memory, 1), triad(triad_memory, plan.threads)};
     bench.cache_triad = {triad(triad_cache, 1), triad(triad_cache, plan.threads)};

@@ -88,9 +88,6 @@ struct SpeedBench {
     std::vector<SizeRecord> sizes;
     double seconds = 0;  ///< that all of it took
     std::string cholmod_missing;
-    /// The sheet on which other simulators were timed: 1000 N/m along the threads, 300 on the diagonals, 0.2
-    /// kg on a square metre.
-    bool like_peers = false;
 };
 
 struct SpeedPlan {
