@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/constraints/near_solids.hpp"
+
 namespace unravel::sim {
 
 namespace {
@@ -332,6 +334,10 @@ void find_touches(std::span<const Solid> solids, const SolidPoses& poses, const 
     const double fall = view.step * view.gravity.norm();
     parallel_chunks(view.x.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         found[chunk].clear();
+        const auto near =
+            NearSolids::to_touch(poses.reach, view.x.subspan(begin, end - begin),
+                                 view.v.subspan(begin, end - begin), view.step, fall / view.step);
+        if (near.none()) return;
         auto next = std::lower_bound(known.begin(), known.end(), begin,
                                      [](const Contact& c, std::size_t p) { return c.particle < p; });
         for (auto p = static_cast<std::uint32_t>(begin); p < end; ++p) {
@@ -339,7 +345,7 @@ void find_touches(std::span<const Solid> solids, const SolidPoses& poses, const 
             if (pinned.find(p)) continue;
             const double ahead = view.step * (view.v[p].norm() + fall);
             for (std::uint32_t s = 0; s < solids.size(); ++s) {
-                if (poses.reach[s].is_far(view.x[p], ahead)) continue;
+                if (!near.has(s) || poses.reach[s].is_far(view.x[p], ahead)) continue;
                 const Contact* before = nullptr;
                 for (auto k = next; k != known.end() && k->particle == p; ++k) {
                     if (k->solid == s) before = &*k;

@@ -98,6 +98,23 @@ void air_forces(const AirCells& air, const Wind& wind, double t, double h, std::
     });
 }
 
+bool acts(const Wind& wind) {
+    return wind.density > 0 && (wind.drag > 0 || wind.lift > 0);
+}
+
+std::uint32_t held_back(const AirCells& air, const Wind& wind, double t, double h,
+                        std::span<const double> mass, std::span<const Vec3> x, std::span<const Vec3> v) {
+    const Vec3 w = wind_velocity(wind, t);
+    std::uint32_t count = 0;
+    for (const std::array<std::uint32_t, 4>& corners : air.corners) {
+        const CellInWind cell(corners, w, x, v);
+        if (cell.area == 0) continue;
+        const AirPush whole = air_push(wind, cell.area, cell.along, cell.relative.norm(), unbounded);
+        count += std::max(whole.drag, whole.lift) > cell.lightest(corners, mass) / h;
+    }
+    return count;
+}
+
 void find_stiff_air(const AirCells& air, const Wind& wind, double t, double h, std::span<const double> mass,
                     std::span<const Vec3> x, std::span<const Vec3> v, StiffAir& out) {
     out.cells.clear();

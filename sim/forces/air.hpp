@@ -41,6 +41,13 @@ Vec3 wind_velocity(const Wind& wind, double t);
 void air_forces(const AirCells& air, const Wind& wind, double t, double h, std::span<const double> mass,
                 std::span<const Vec3> x, std::span<const Vec3> v, std::span<Vec3> force);
 
+/// Whether the air can do anything at all: it has a density, and a coefficient.
+bool acts(const Wind& wind);
+
+/// Cells whose force air_forces() makes less than the law says, for steps of h seconds from (x, v) at time t.
+std::uint32_t held_back(const AirCells& air, const Wind& wind, double t, double h,
+                        std::span<const double> mass, std::span<const Vec3> x, std::span<const Vec3> v);
+
 /// Cells that the air would bring to more than half of its own speed within a step, if its force stayed what
 /// it is where the step begins: light cloth, strong wind. Their force is linear in the velocity at the step's
 /// end, with the coefficients of its beginning,

@@ -14,6 +14,7 @@
 #include "sim/model/mesh_springs.hpp"
 #include "sim/model/moduli.hpp"
 #include "sim/model/pins.hpp"
+#include "sim/model/reach.hpp"
 
 namespace unravel::sim {
 
@@ -349,7 +350,8 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
     for (const Grid& g : grids) {
         if (!g.patch.grid()) add_stitches(g.cloth, g.patch, placement, model);
     }
-    model.wind = scene.wind;
+    if (scene.wind && acts(*scene.wind)) model.wind = scene.wind;
+    model.may_touch = can_come_near(scene, model, placement);
     if (scene.self_collision) {
         model.self_collision = fitting(*scene.self_collision, grids, model);
         find_mesh_neighbours(model);

@@ -97,7 +97,8 @@ struct ClothModel {
     double begin = 0;           ///< s, when the simulation begins; below 0: it settles first
     Vec3 gravity{0, 0, 0};      ///< m/s²
     std::vector<Solid> solids;  ///< what the cloth meets; empty: no contact at all
-    std::optional<Wind> wind;   ///< absent: no air at all
+    bool may_touch = false;     ///< whether the cloth can come to any of them (sim/model/reach.hpp)
+    std::optional<Wind> wind;   ///< absent: no air at all, or none that could act
     std::optional<SelfCollision> self_collision;  ///< absent: none; what the scene leaves open is filled in
     std::shared_ptr<const ContactModel> contact;  ///< null where no surfaces meet (make_contact_model())
     Neighbours neighbours;                        ///< of particles of meshes; empty without self-collision

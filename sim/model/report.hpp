@@ -49,6 +49,8 @@ struct StepReport {
     /// through solids, and how deep cloth is in a solid [m]. Absent elsewhere, and where nothing can meet.
     std::optional<std::uint64_t> crossings, in_solids;
     double deepest = 0;
+    /// At the same places: cells that an explicit step spares a part of the air's force (held_back()).
+    std::uint32_t air_held = 0;
     double max_strain = 0, p99_strain = 0;  ///< of stretch springs, (l − L)/L
     std::uint32_t strained = 0;             ///< the stretch spring of largest strain
     std::uint32_t pulling = 0;              ///< contacts with solids that stay though they pull

@@ -80,6 +80,7 @@ void members(Archive& archive, Record& r) {
         archive(s.crossings);
         archive(s.in_solids);
         archive(s.deepest);
+        archive(s.air_held);
         archive(s.strained);
         archive(s.pulling);
         archive(s.max_strain);

@@ -9,6 +9,19 @@
 
 namespace unravel::sim {
 
+namespace {
+
+// Cells from which explicit steps keep a part of the air's force, as the simulation stands.
+std::uint32_t count_held_air(const Simulation& simulation) {
+    const ForceSettings& settings = simulation.ws.plan.step.forces.settings;
+    if (!settings.all_explicit) return 0;
+    const ClothState& state = simulation.state;
+    return held_back(air_cells(simulation.model), *simulation.model.wind, state.t, settings.h,
+                     simulation.model.mass, state.x, state.v);
+}
+
+}  // namespace
+
 int steps_per_frame(const Scene& scene) {
     return static_cast<int>(std::lround(1.0 / (scene.clip.fps.per_second() * scene.solver.step)));
 }
@@ -96,6 +109,7 @@ FrameRecord next_record(Simulation& simulation) {
         reports.back().in_solids = passages.solids;
         reports.back().deepest = passages.deepest;
     }
+    if (simulation.model.wind && !reports.empty()) reports.back().air_held = count_held_air(simulation);
     FrameRecord record = present_record(simulation);
     record.reports = std::move(reports);
     return record;

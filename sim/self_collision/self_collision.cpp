@@ -7,9 +7,12 @@ namespace unravel::sim {
 
 namespace {
 
-// Pairs are searched out to this many thicknesses, so that the list lasts until something has moved half the
-// excess.
-constexpr double search_share = 1.5;
+// Pairs are searched out to between so many thicknesses, so that the list lasts until particles have moved by
+// half the excess against each other: far where that finds few, near where it finds many. How far decides
+// what a step costs, never which pairs are nearer than the thickness.
+constexpr double least_search = 1.5, search_growth = 1.5;
+// Pairs for each particle that are many, and few.
+constexpr double many_pairs = 1, few_pairs = 0.25;
 
 struct Voxel {
     std::int64_t x, y, z;
@@ -42,26 +45,27 @@ void fill_voxels(std::span<const Vec3> x, double edge, std::uint32_t mask, SelfC
     ws.voxel_start[0] = 0;
 }
 
-// Partners of p with a higher number, sorted.
-void partners_of(const ClothModel& model, std::span<const Vec3> x, double radius, std::uint32_t mask,
-                 std::uint32_t p, const SelfCollisionWorkspace& ws, std::vector<std::uint32_t>& partners) {
-    partners.clear();
-    const Voxel home = voxel_at(x[p], radius);
-    for (std::int64_t dz = -1; dz <= 1; ++dz) {
-        for (std::int64_t dy = -1; dy <= 1; ++dy) {
-            for (std::int64_t dx = -1; dx <= 1; ++dx) {
-                const std::uint32_t slot = slot_of({home.x + dx, home.y + dy, home.z + dz}, mask);
-                for (std::uint32_t k = ws.voxel_start[slot]; k < ws.voxel_start[slot + 1]; ++k) {
-                    const std::uint32_t q = ws.voxel_particles[k];
-                    if (q <= p || (x[q] - x[p]).squaredNorm() > radius * radius) continue;
-                    if (!are_neighbours(model, p, q)) partners.push_back(q);
-                }
-            }
+// A pair of particles as one number, i before j, that sorts as they do.
+std::uint64_t pair_of(std::uint32_t p, std::uint32_t q) {
+    return std::uint64_t{std::min(p, q)} << 32 | std::max(p, q);
+}
+
+// Pairs of p with particles of its own voxel, and of those of the 26 round it that come after it: from each
+// two voxels once.
+void add_pairs_of(const ClothModel& model, std::span<const Vec3> x, double radius, std::uint32_t mask,
+                  std::uint32_t p, const SelfCollisionWorkspace& ws, std::vector<std::uint64_t>& pairs) {
+    const auto add = [&](std::uint32_t slot, std::uint32_t after) {
+        for (std::uint32_t k = ws.voxel_start[slot]; k < ws.voxel_start[slot + 1]; ++k) {
+            const std::uint32_t q = ws.voxel_particles[k];
+            if (q < after || q == p || (x[q] - x[p]).squaredNorm() > radius * radius) continue;
+            if (!are_neighbours(model, std::min(p, q), std::max(p, q))) pairs.push_back(pair_of(p, q));
         }
-    }
-    // Two of the 27 voxels may share a slot.
-    std::sort(partners.begin(), partners.end());
-    partners.erase(std::unique(partners.begin(), partners.end()), partners.end());
+    };
+    const Voxel home = voxel_at(x[p], radius);
+    add(ws.voxel_of[p], p);
+    constexpr int after_home = 14;  // of the 27
+    for (int k = after_home; k < 27; ++k)
+        add(slot_of({home.x + k % 3 - 1, home.y + k / 3 % 3 - 1, home.z + k / 9 - 1}, mask), 0);
 }
 
 void search(const ClothModel& model, std::span<const Vec3> x, double radius, SelfCollisionWorkspace& ws) {
@@ -71,31 +75,44 @@ void search(const ClothModel& model, std::span<const Vec3> x, double radius, Sel
     fill_voxels(x, radius, mask, ws);
     ws.found.resize(chunk_count(x.size()));
     parallel_chunks(x.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-        std::vector<std::uint32_t>& found = ws.found[chunk];
-        std::vector<std::uint32_t> partners;
-        found.clear();
-        for (auto p = static_cast<std::uint32_t>(begin); p < end; ++p) {
-            partners_of(model, x, radius, mask, p, ws, partners);
-            for (const std::uint32_t q : partners) found.insert(found.end(), {p, q});
-        }
+        ws.found[chunk].clear();
+        for (auto p = static_cast<std::uint32_t>(begin); p < end; ++p)
+            add_pairs_of(model, x, radius, mask, p, ws, ws.found[chunk]);
     });
-    ws.candidate_i.clear();
-    ws.candidate_j.clear();
-    for (const std::vector<std::uint32_t>& found : ws.found) {
-        for (std::size_t k = 0; k < found.size(); k += 2) {
-            ws.candidate_i.push_back(found[k]);
-            ws.candidate_j.push_back(found[k + 1]);
-        }
-    }
+    ws.pairs.clear();
+    for (const std::vector<std::uint64_t>& found : ws.found)
+        ws.pairs.insert(ws.pairs.end(), found.begin(), found.end());
+    // Two of the voxels may share a slot.
+    std::sort(ws.pairs.begin(), ws.pairs.end());
+    ws.pairs.erase(std::unique(ws.pairs.begin(), ws.pairs.end()), ws.pairs.end());
     ws.x_searched.assign(x.begin(), x.end());
 }
 
+// Whether any two particles may have come nearer to each other than by twice the bound: what they have moved
+// in common brings none together.
 bool moved_too_far(std::span<const Vec3> x, std::span<const Vec3> before, double bound) {
     if (before.size() != x.size()) return true;
+    Vec3 common = Vec3::Zero();
+    for (std::size_t p = 0; p < x.size(); ++p) common += x[p] - before[p];
+    common /= static_cast<double>(x.size());
     for (std::size_t p = 0; p < x.size(); ++p) {
-        if ((x[p] - before[p]).squaredNorm() > bound * bound) return true;
+        if ((x[p] - before[p] - common).squaredNorm() > bound * bound) return true;
     }
     return false;
+}
+
+// Looks for pairs where those known may not be all, as far as was worth while the last time.
+void keep_pairs(const ClothModel& model, std::span<const Vec3> x, SelfCollisionWorkspace& ws) {
+    const double thickness = model.self_collision->thickness;
+    if (!moved_too_far(x, ws.x_searched, 0.5 * (ws.searched - 1) * thickness)) return;
+    const double particles = static_cast<double>(x.size());
+    if (static_cast<double>(ws.pairs.size()) > many_pairs * particles) {
+        // Most are of cloth that lies flat, or will go on to lie as it lies: never so far again.
+        ws.searched = ws.farthest = std::max(least_search, ws.searched / search_growth);
+    } else if (static_cast<double>(ws.pairs.size()) < few_pairs * particles) {
+        ws.searched = std::min(ws.farthest, ws.searched * search_growth);
+    }
+    search(model, x, ws.searched * thickness, ws);
 }
 
 }  // namespace
@@ -125,19 +142,19 @@ bool are_neighbours(const ClothModel& model, std::uint32_t p, std::uint32_t q) {
 void self_collide(const ClothModel& model, std::span<const Vec3> x, std::span<const Vec3> v, double h,
                   double threshold, SelfCollisionWorkspace& ws) {
     const SelfCollision& settings = *model.self_collision;
-    const double radius = search_share * settings.thickness;
-    if (moved_too_far(x, ws.x_searched, 0.5 * (radius - settings.thickness))) search(model, x, radius, ws);
+    keep_pairs(model, x, ws);
 
     ExtensionSprings& springs = ws.springs;
     springs.i.clear();
     springs.j.clear();
     ws.least_distance = settings.thickness;
-    for (std::size_t k = 0; k < ws.candidate_i.size(); ++k) {
-        const double distance = (x[ws.candidate_j[k]] - x[ws.candidate_i[k]]).norm();
+    for (const std::uint64_t pair : ws.pairs) {
+        const auto i = static_cast<std::uint32_t>(pair >> 32), j = static_cast<std::uint32_t>(pair);
+        const double distance = (x[j] - x[i]).norm();
         ws.least_distance = std::min(ws.least_distance, distance);
         if (distance >= settings.thickness) continue;
-        springs.i.push_back(ws.candidate_i[k]);
-        springs.j.push_back(ws.candidate_j[k]);
+        springs.i.push_back(i);
+        springs.j.push_back(j);
     }
     const auto fill = [&](Coefficients& values, double value) { values.own().assign(springs.size(), value); };
     fill(springs.rest, settings.thickness);
@@ -161,7 +178,9 @@ void self_collide(const ClothModel& model, std::span<const Vec3> x, std::span<co
         ws.forces.transverse[s] = 0;
         ws.forces.state[s] = bears ? SpringState::explicit_ : SpringState::implicit;
     });
-    ws.adjacency = adjacency_of(x.size(), springs.i, springs.j);
+    // Of none it is what it was of none before.
+    if (springs.size() > 0 || !ws.adjacency.entries.empty() || ws.adjacency.start.size() != x.size() + 1)
+        ws.adjacency = adjacency_of(x.size(), springs.i, springs.j);
 }
 
 }  // namespace unravel::sim

@@ -19,12 +19,13 @@ struct SelfCollisionWorkspace {
     Adjacency adjacency;
     double least_distance = 0;  ///< m, between particles that may collide; the thickness if none are nearer
 
-    /// Pairs near enough to matter within a while, found by voxels; reused until a particle has moved too
-    /// far.
-    std::vector<std::uint32_t> candidate_i, candidate_j;
-    std::vector<Vec3> x_searched;  ///< (particles) where they were then [m]
+    /// Pairs near enough to matter within a while, found by voxels; reused until particles may have come too
+    /// far against each other.
+    std::vector<std::uint64_t> pairs;     ///< i · 2³² + j, i < j, sorted
+    double searched = 1.5, farthest = 6;  ///< thicknesses out to which they are looked for, and may be
+    std::vector<Vec3> x_searched;         ///< (particles) where they were then [m]
     std::vector<std::uint32_t> voxel_start, voxel_particles, voxel_of;
-    std::vector<std::vector<std::uint32_t>> found;  ///< (chunks of particles) i, j, i, j, …
+    std::vector<std::vector<std::uint64_t>> found;  ///< (chunks of particles) pairs
 };
 
 /// Finds the step's pairs at (x, v), split by κ ≤ threshold. Memory is kept between steps.

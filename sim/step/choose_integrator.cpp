@@ -15,13 +15,12 @@ IntegratorCosts count_costs(const ClothModel& model, const StepOptions& options,
     IntegratorCosts costs;
     costs.substeps = substeps_of(model, dividing, h, memory);
     costs.swept = options.sweep && why_not_swept(model).empty();
-    const bool touches = !model.solids.empty();
-    const double substep =
-        !costs.swept ? cost::turned_substep : cost::swept_substep + (touches ? cost::swept_contact : 0.0);
+    const double substep = !costs.swept ? cost::turned_substep
+                                        : cost::swept_substep + (model.may_touch ? cost::swept_contact : 0.0);
     costs.explicit_cost = (costs.swept ? cost::swept_step : 0.0) + costs.substeps * substep;
     const double iterations = std::min(costs.substeps * cost::iterations_per_substep, cost::most_iterations);
-    costs.coupled_cost =
-        cost::coupled_step + (touches ? cost::coupled_contact : 0.0) + iterations * cost::coupled_iteration;
+    costs.coupled_cost = cost::coupled_step + (model.may_touch ? cost::coupled_contact : 0.0) +
+                         iterations * cost::coupled_iteration;
     return costs;
 }
 

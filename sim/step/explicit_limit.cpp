@@ -73,66 +73,134 @@ double stable_substeps(double h, double stable) {
     return std::max(1.0, std::ceil(h / (limit_margin * stable) - 1e-9));
 }
 
-ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options, double h) {
-    const Scheme& scheme = scheme_of(options.integrator);
-    const Splitting splitting = splitting_of(options);
-    // What is pinned for good does not swing.
-    std::vector<char> held(model.size(), 0);
-    for (const PinnedGroup& pin : model.pins) {
-        for (const std::uint32_t p : pin.particles) held[p] = !std::isfinite(pin.release) && !pin.slides();
+namespace {
+
+// What is explicit at each particle, apart from the step that bears it.
+class ExplicitParts {
+public:
+    // As split for a step of h seconds.
+    ExplicitParts(const ClothModel& model, const StepOptions& options, double h)
+        : model_(model),
+          splitting_(splitting_of(options)),
+          bound_(scheme_of(options.integrator).explicit_bound),
+          stiffness_(model.size(), Eigen::Matrix2d::Zero()),
+          damping_(model.size(), Eigen::Matrix2d::Zero()),
+          kappa_(model.size(), 0.0),
+          held_(model.size(), 0) {
+        // What is pinned for good does not swing.
+        for (const PinnedGroup& pin : model.pins) {
+            for (const std::uint32_t p : pin.particles)
+                held_[p] = !std::isfinite(pin.release) && !pin.slides();
+        }
+        add_springs(h);
+        split_bending(h);
     }
-    std::vector<std::vector<Vec3>> normals(model.cloths.size());
-    for (std::size_t c = 0; c < normals.size(); ++c) {
-        if (!model.cloths[c].grid()) normals[c] = rest_normals(*model.cloths[c].mesh);
+
+    // (h²λ + 2hμ)/bound at a particle, of a step of h seconds; 0 where it is held.
+    double share(std::uint32_t p, double h) const {
+        if (held_[p] != 0) return 0;
+        const double springs = larger_eigenvalue(h * h * stiffness_[p] + 2 * h * damping_[p]);
+        return (2 * springs / model_.mass[p] + h * h * bending_[p]) / bound_;
     }
-    const auto share_at = [&](double step, ExplicitLimit* out) {
-        std::vector<Eigen::Matrix2d> blocks(model.size(), Eigen::Matrix2d::Zero());
-        std::vector<double> kappas(model.size(), 0.0);
-        for (std::uint32_t s = 0; s < model.springs.size(); ++s) {
-            const std::uint32_t i = model.springs.i[s], j = model.springs.j[s];
-            const double k = model.springs.stiffness[s], d = model.springs.damping[s];
-            const double of_spring = kappa_between(step, model.mass[i], model.mass[j], k, d);
-            if (!is_explicit(of_spring, splitting.threshold(s < model.springs.stretch_count))) continue;
-            const std::size_t c = patch_of(model, i);
-            const bool grid = model.cloths[c].grid();
-            const std::uint32_t first = model.cloths[c].first;
-            Vec2 u = grid ? flat_direction(model, i, j) : Vec2::Zero();
+    // Largest κ there, as split.
+    double kappa(std::uint32_t p, double h) const { return std::max(kappa_[p], h * h * bending_[p] / 8); }
+
+    // The largest share, and the first particle that has it.
+    ExplicitLimit worst(double h) const {
+        ExplicitLimit out;
+        for (std::uint32_t p = 0; p < model_.size(); ++p) {
+            const double here = share(p, h);
+            if (here > out.share) out = {here, p, kappa(p, h), 0};
+        }
+        return out;
+    }
+
+    // The largest step between two that nowhere takes the whole share, by so many halvings.
+    double largest_step(double low, double high, int halvings) {
+        if (bending_follows_step()) {
+            return bisect(low, high, halvings, [&](double h) {
+                split_bending(h);
+                return worst(h).share < 1;
+            });
+        }
+        // Most particles are like others: each is asked whether it bears what those before it do.
+        double step = high;
+        for (std::uint32_t p = 0; p < model_.size(); ++p) {
+            if (step == low || share(p, step) < 1) continue;
+            step = bisect(low, high, halvings, [&](double h) { return share(p, h) < 1; });
+        }
+        return step;
+    }
+
+private:
+    template <typename F>
+    static double bisect(double low, double high, int halvings, const F& bears) {
+        for (int k = 0; k < halvings; ++k) {
+            const double middle = 0.5 * (low + high);
+            (bears(middle) ? low : high) = middle;
+        }
+        return low;
+    }
+
+    bool bending_follows_step() const {
+        return splitting_.bend_threshold > always_implicit && splitting_.bend_threshold < always_explicit;
+    }
+
+    void add_springs(double h) {
+        std::vector<std::vector<Vec3>> normals(model_.cloths.size());
+        for (std::size_t c = 0; c < normals.size(); ++c) {
+            if (!model_.cloths[c].grid()) normals[c] = rest_normals(*model_.cloths[c].mesh);
+        }
+        for (std::uint32_t s = 0; s < model_.springs.size(); ++s) {
+            const std::uint32_t i = model_.springs.i[s], j = model_.springs.j[s];
+            const double k = model_.springs.stiffness[s], d = model_.springs.damping[s];
+            const double of_spring = kappa_between(h, model_.mass[i], model_.mass[j], k, d);
+            if (!is_explicit(of_spring, splitting_.threshold(s < model_.springs.stretch_count))) continue;
+            const std::size_t c = patch_of(model_, i);
+            const bool grid = model_.cloths[c].grid();
+            const std::uint32_t first = model_.cloths[c].first;
+            Vec2 u = grid ? flat_direction(model_, i, j) : Vec2::Zero();
             for (const std::uint32_t p : {i, j}) {
                 if (!grid)
-                    u = tangent_direction(*model.cloths[c].mesh, normals[c], p - first, i - first, j - first);
-                blocks[p] += step * (step * k + 2.0 * d) * u * u.transpose();
-                kappas[p] = std::max(kappas[p], of_spring);
+                    u = tangent_direction(*model_.cloths[c].mesh, normals[c], p - first, i - first,
+                                          j - first);
+                const Eigen::Matrix2d along = u * u.transpose();
+                stiffness_[p] += k * along;
+                damping_[p] += d * along;
+                kappa_[p] = std::max(kappa_[p], of_spring);
             }
         }
-        const auto implicit = implicit_curvature(model.curvature, model.springs, model.mass, step, splitting);
-        const std::vector<double> bending =
-            curvature_bounds(model.curvature, model.mass, [&](std::size_t s) { return implicit[s] == 0; });
-        double share = 0;
-        for (std::uint32_t p = 0; p < model.size(); ++p) {
-            if (held[p] != 0) continue;
-            const double here =
-                (2 * larger_eigenvalue(blocks[p]) / model.mass[p] + step * step * bending[p]) /
-                scheme.explicit_bound;
-            if (here <= share) continue;
-            share = here;
-            if (out) *out = {share, p, std::max(kappas[p], step * step * bending[p] / 8), 0};
-        }
-        return share;
-    };
-    ExplicitLimit limit;
-    share_at(h, &limit);
+    }
+
+    void split_bending(double h) {
+        const auto implicit =
+            implicit_curvature(model_.curvature, model_.springs, model_.mass, h, splitting_);
+        bending_ =
+            curvature_bounds(model_.curvature, model_.mass, [&](std::size_t s) { return implicit[s] == 0; });
+    }
+
+    const ClothModel& model_;
+    Splitting splitting_;
+    double bound_;
+    std::vector<Eigen::Matrix2d> stiffness_, damping_;  // (particles) K_i [N/m] and D_i [N·s/m] in the plane
+    std::vector<double> kappa_;                         // (particles) largest κ of a spring
+    std::vector<double> bending_;                       // (particles) bound of bending's λ [1/s²]
+    std::vector<char> held_;
+};
+
+}  // namespace
+
+ExplicitLimit explicit_limit(const ClothModel& model, const StepOptions& options, double h) {
+    ExplicitParts parts(model, options, h);
+    ExplicitLimit limit = parts.worst(h);
     limit.step = std::numeric_limits<double>::infinity();
+    const Splitting splitting = splitting_of(options);
     const bool follows_step = splitting.stretch_threshold < always_explicit &&
                               splitting.shear_threshold < always_explicit &&
                               splitting.bend_threshold < always_explicit;
     if (limit.share == 0 || follows_step) return limit;
     // The share grows with the step: at least linearly, at most as its square.
-    double low = h / std::max(1.0, limit.share), high = h * std::max(1.0, 1.0 / limit.share);
-    for (int k = 0; k < 40; ++k) {
-        const double middle = 0.5 * (low + high);
-        (share_at(middle, nullptr) < 1 ? low : high) = middle;
-    }
-    limit.step = low;
+    limit.step = parts.largest_step(h / std::max(1.0, limit.share), h * std::max(1.0, 1.0 / limit.share), 40);
     return limit;
 }
 

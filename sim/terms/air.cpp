@@ -9,11 +9,6 @@ namespace unravel::sim {
 
 namespace {
 
-// For the air to do anything at all.
-bool acts_at_all(const Wind& wind) {
-    return wind.density > 0 && (wind.drag > 0 || wind.lift > 0);
-}
-
 const AirCells& cells_of(const ClothModel& model, AirMemory& own) {
     if (own.cells.start.size() != model.size() + 1) own.cells = air_cells(model);
     return own.cells;
@@ -32,7 +27,6 @@ void push_air(const ClothModel& model, const ForcesAt& at, ForceMemory& memory, 
 }
 
 void stiffen_air(const ClothModel& model, const ForcesAt& at, ForceMemory& memory) {
-    if (!acts_at_all(*model.wind)) return;
     AirMemory& own = memory.air;
     find_stiff_air(cells_of(model, own), *model.wind, at.t, at.settings.h, model.mass, at.x, at.v, own.stiff);
 }
@@ -68,7 +62,7 @@ bool blows(const Wind& wind) {
 
 // Along the way that each cell's middle has gone.
 double work_of_wind(const ClothModel& model, const StepEnds& step, ForceMemory& memory) {
-    if (!blows(*model.wind) || !acts_at_all(*model.wind)) return 0;
+    if (!blows(*model.wind)) return 0;
     AirMemory& own = memory.air;
     find_forces(model, step.settings, step.t, step.x, step.v, own);
     const auto way = [&](const std::array<std::uint32_t, 4>& corners) {
@@ -86,8 +80,10 @@ double work_of_wind(const ClothModel& model, const StepEnds& step, ForceMemory& 
 }
 
 void list_wind(const Scene& scene, std::vector<Effect>& effects) {
-    const bool on = scene.wind.has_value();
-    effects.push_back({"wind", on, on ? "[wind]" + place_text(scene.wind->place) : "no [wind]"});
+    const bool there = scene.wind.has_value(), on = there && acts(*scene.wind);
+    const std::string table = there ? "[wind]" + place_text(scene.wind->place) : "no [wind]";
+    effects.push_back(
+        {"wind", on, on || !there ? table : table + " has no density, or neither drag nor lift"});
 }
 
 }  // namespace

@@ -14,11 +14,13 @@ void find_and_push_apart(const ClothModel& model, const ForcesAt& at, ForceMemor
 }
 
 void add_pairs(const ClothModel&, const ForceMemory& memory, std::span<Vec3> force) {
+    if (memory.self_collision.springs.size() == 0) return;
     add_by_spring(memory.self_collision.adjacency, memory.self_collision.forces.force, force);
 }
 
 void couple_pairs(const ClothModel&, const ForcesAt& at, const ForceMemory& memory, StepCouplings& out) {
     const SelfCollisionWorkspace& own = memory.self_collision;
+    if (own.springs.size() == 0) return;
     out.springs.push_back({&own.springs, &own.adjacency, &own.forces, at.drift_from_start});
 }
 

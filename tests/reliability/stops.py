@@ -2,11 +2,10 @@
 
 import json
 import os
-import random
-import shutil
 import signal
 import time
 
+from kills import kill_at_random
 from run_files import check_same, check_whole, content, leftovers, video_frames
 from tool_runs import (DONE, HERE, PATIENCE, SIMULATION, USAGE, finish, job, run, start, stopped_by,
                        wait_for_frames)
@@ -69,32 +68,7 @@ def test_signals_that_the_caller_ignores_do_not_stop_a_run(reference, folder):
 
 
 def test_kills_at_random_leave_whole_files_and_resume_ends_with_the_same_bytes(reference, folder):
-    kills = int(os.environ.get("UNRAVEL_KILLS", "12"))
-    dice = random.Random(20040829)
-    done = finished = 0
-    while done < kills:
-        out = folder / f"killed_{finished}"
-        command = "run" if finished % 2 == 0 else "simulate"
-        while done < kills:
-            # A random number of frames on, then a random moment: spread over the run however loaded the machine is.
-            there = len(list(out.glob("cache/frame_*.state")))
-            process = start(job(out, *(["--resume"] if out.exists() else []), command=command))
-            wait_for_frames(process, out, there + dice.randint(0, 4))
-            time.sleep(dice.uniform(0, 0.1 * reference.seconds))
-            process.kill()
-            process.communicate(timeout=PATIENCE)
-            ended = process.returncode != -signal.SIGKILL
-            if out.exists():
-                check_whole(out)
-            if ended:
-                assert process.returncode == DONE, process.returncode
-                break
-            done += 1
-        run(job(out, *(["--resume"] if out.exists() else []), command=command))
-        reference.check(out, f"after {done} kills", videos=command == "run")
-        finished += 1
-        shutil.rmtree(out)
-    print(f"    {done} kills over {finished} runs, nothing lost", flush=True)
+    kill_at_random(reference, folder, int(os.environ.get("UNRAVEL_KILLS", "12")), 20040829)
 
 
 def test_two_runs_do_not_share_a_folder(reference, folder):

@@ -126,7 +126,7 @@ MemoryRecord account_memory(const Simulation& simulation, double peak) {
     const SelfCollisionWorkspace& c = f.self_collision;
     add("self-collision",
         bytes(c.springs) + bytes(c.forces) + static_cast<double>(c.adjacency.bytes()) +
-            bytes(c.candidate_i, c.candidate_j, c.x_searched, c.voxel_start, c.voxel_particles, c.voxel_of));
+            bytes(c.pairs, c.x_searched, c.voxel_start, c.voxel_particles, c.voxel_of));
     add("components", bytes(l.parent, l.components.label, l.components.order, l.components.start));
     const double by_rows = row_share(l.system, l.components);
     const System& A = l.system;

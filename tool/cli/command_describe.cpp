@@ -1,4 +1,4 @@
-// unravel describe man|completion: the tool itself, for manuals and shells.
+// unravel describe man|completion|commands: the tool itself, for manuals, shells and scripts.
 
 #include <fmt/format.h>
 
@@ -12,12 +12,15 @@ namespace unravel::tool {
 namespace {
 
 struct DescribeOptions {
-    std::string as;  // man or completion
+    std::string as;  // man, completion or commands
     const CLI::App* whole = nullptr;
 };
 
 int describe_tool(const DescribeOptions& options) {
-    fmt::print("{}", options.as == "man" ? man_page(*options.whole) : bash_completion(*options.whole));
+    const auto text = options.as == "man"          ? man_page
+                      : options.as == "completion" ? bash_completion
+                                                   : command_names;
+    fmt::print("{}", text(*options.whole));
     return exit_done;
 }
 
@@ -27,8 +30,8 @@ void add_describe(CommandLine& line) {
     const auto [command, o] =
         line.add("describe", "the tool itself, as a man page or for a shell's completion", describe_tool);
     o.whole = &line.description();
-    command.add_option("what", o.as, "man, or completion (bash; zsh by bashcompinit)")
-        ->check(CLI::IsMember({"man", "completion"}))
+    command.add_option("what", o.as, "man, completion (bash; zsh by bashcompinit), or commands: their names")
+        ->check(CLI::IsMember({"man", "completion", "commands"}))
         ->required();
 }
 

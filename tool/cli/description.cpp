@@ -120,6 +120,12 @@ interrupted
 
 }  // namespace
 
+std::string command_names(const CLI::App& app) {
+    std::string names;
+    for (const CLI::App* command : commands_of(app)) names += command->get_name() + "\n";
+    return names;
+}
+
 std::string man_page(const CLI::App& app) {
     std::string page = fmt::format(".TH UNRAVEL 1 \"\" \"unravel {}\" \"User commands\"\n", version());
     page += fmt::format(".SH NAME\nunravel \\- {}\n", "simulate cloth and render it off\\-screen");

@@ -9,6 +9,9 @@ namespace unravel::tool {
 
 // What a command line says of itself, told in other ways than --help.
 
+/// The commands' names, one a line.
+std::string command_names(const CLI::App& app);
+
 /// A man page in man(7) macros: every command with its options, exit codes, files.
 std::string man_page(const CLI::App& app);
 

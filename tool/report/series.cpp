@@ -150,18 +150,7 @@ std::vector<std::string> page_warnings(const Scene& scene, const ClothModel& mod
         warnings.push_back(fmt::format("The run was {} after {} of {} frames.",
                                        status == "failed" ? "given up" : "stopped", frames.size(), wanted));
     }
-    const auto open =
-        std::count_if(reports.begin(), reports.end(), [](const auto& r) { return !r.converged; });
-    if (open > 0) {
-        const auto first =
-            std::find_if(reports.begin(), reports.end(), [](const auto& r) { return !r.converged; });
-        warnings.push_back(fmt::format(
-            "In {} of {} steps a component did not reach the tolerance {} within {} iterations; the first is "
-            "step {} at {:.4g} s.",
-            open, reports.size(), scene.solver.tolerance, scene.solver.max_iterations, first->step,
-            first->t));
-    }
-    for (std::string& line : findings(model, reports)) warnings.push_back(std::move(line));
+    for (std::string& line : findings(scene, model, reports)) warnings.push_back(std::move(line));
     return warnings;
 }
 

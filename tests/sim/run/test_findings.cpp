@@ -1,5 +1,6 @@
 // What is told at the end of a run, and the counts that it is told from.
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "sim/run/findings.hpp"
@@ -30,17 +31,19 @@ Passages at_start(const Scene& scene) {
 }  // namespace
 
 TEST_CASE("a run in which nothing happened has nothing to tell", "[findings]") {
-    const Simulation simulation = start_simulation(sheet_at(1));
-    CHECK(findings(simulation.model, {}).empty());
+    const Scene scene = sheet_at(1);
+    const Simulation simulation = start_simulation(scene);
+    CHECK(findings(scene, simulation.model, {}).empty());
     StepReport quiet;
     quiet.crossings = 0;
     quiet.in_solids = 0;
     quiet.max_strain = 0.19;
-    CHECK(findings(simulation.model, std::vector<StepReport>(3, quiet)).empty());
+    CHECK(findings(scene, simulation.model, std::vector<StepReport>(3, quiet)).empty());
 }
 
 TEST_CASE("strain is told with its place and time, crossings with the first and the most", "[findings]") {
-    const Simulation simulation = start_simulation(sheet_at(1));
+    const Scene scene = sheet_at(1);
+    const Simulation simulation = start_simulation(scene);
     std::vector<StepReport> reports(4);
     for (std::size_t k = 0; k < 4; ++k) {
         reports[k].step = k + 1;
@@ -53,13 +56,108 @@ TEST_CASE("strain is told with its place and time, crossings with the first and 
     reports[3].in_solids = 2;
     reports[3].deepest = 0.003;
     reports[0].pulling = 5;
-    const std::vector<std::string> lines = findings(simulation.model, reports);
+    const std::vector<std::string> lines = findings(scene, simulation.model, reports);
     REQUIRE(lines.size() == 4);
     CHECK_THAT(lines[0], Contains("particle 0 (u 0, v 0)") && Contains("31%") && Contains("0.03 s (step 3)"));
     CHECK_THAT(lines[1],
                Contains("from 0.02 s on: 1 edge there, at most 7 at 0.04 s") && Contains("[self_collision]"));
     CHECK_THAT(lines[2], Contains("2 edges") && Contains("3 mm deep"));
     CHECK_THAT(lines[3], Contains("first at 0.01 s, at most 5"));
+}
+
+namespace {
+
+// What is told at the end of a run of the scene.
+std::vector<std::string> told(const Scene& scene) {
+    Simulation simulation = start_simulation(scene);
+    std::vector<StepReport> reports;
+    for (int frame = 1; frame < scene.clip.frames(); ++frame) {
+        const FrameRecord record = next_record(simulation);
+        reports.insert(reports.end(), record.reports.begin(), record.reports.end());
+    }
+    return findings(scene, simulation.model, reports);
+}
+
+Scene parsed(const std::string& text) {
+    return parse_scene(text, "scene.toml");
+}
+
+constexpr const char* short_clip = "[clip]\nduration = 0.08\nfps = 25\n";
+
+}  // namespace
+
+TEST_CASE("steps that end short of their tolerance are told, of Newton's method and of too few iterations",
+          "[findings]") {
+    const std::string silk = std::string(short_clip) +
+                             "[cloth]\nparticles = [21, 21]\nmaterial = { preset = \"silk\" }\n"
+                             "[[cloth.pin]]\nedge = \"u0\"\n[solver]\nstep = \"1/50\"\n";
+    const std::vector<std::string> few = told(parsed(silk + "tolerance = 1e-12\nmax_iterations = 40\n"));
+    REQUIRE(!few.empty());
+    CHECK_THAT(few[0], Contains("of 4 steps did not reach the tolerance 1e-12 within 40 iterations") &&
+                           Contains("the first at 0.0"));
+    const Scene newton = parsed(silk + "integrator = \"newton\"\ntolerance = 1e-14\n");
+    const Simulation simulation = start_simulation(newton);
+    std::vector<StepReport> reports(10);
+    reports[3].converged = false;
+    CHECK_THAT(findings(newton, simulation.model, reports).at(0),
+               Contains("1 of 10 steps") && Contains("Newton's method"));
+}
+
+TEST_CASE("steps taken again are told where they are many, and where steps do not adapt anyway",
+          "[findings]") {
+    Scene scene = sheet_at(1);
+    const Simulation simulation = start_simulation(scene);
+    std::vector<StepReport> reports(100);
+    for (std::size_t k = 0; k < 5; ++k) reports[10 + k].rejected = 1;
+    CHECK(findings(scene, simulation.model, reports).empty());
+    reports[20].rejected = 1;
+    reports[10].t = 0.25;
+    CHECK_THAT(findings(scene, simulation.model, reports).at(0),
+               Contains("6 of 100 steps were taken again") && Contains("first at 0.25 s"));
+    scene.solver.adaptive = AdaptiveStep{};
+    CHECK(findings(scene, simulation.model, reports).empty());
+}
+
+TEST_CASE("wind that explicit steps do not bear is told, and what implicit ones bear is not", "[findings]") {
+    // ½ ρ A v of a cell is many times a corner's mass over the step.
+    const std::string veil = "gravity = [0, 0, 0]\n" + std::string(short_clip) +
+                             "[cloth]\nparticles = [5, 5]\ndensity = 0.01\n"
+                             "material = { stretch = 0.01, shear = 0, bend = 0, stretch_damping = 0 }\n"
+                             "[[cloth.pin]]\nedge = [\"u0\", \"u1\", \"v0\", \"v1\"]\n"
+                             "[wind]\nvelocity = [0, 1, 0]\n[solver]\nstep = \"1/25\"\n";
+    const std::vector<std::string> held = told(parsed(veil + "integrator = \"explicit\"\n"));
+    CHECK(std::ranges::any_of(held, [](const auto& line) {
+        return line.find("cells less than it would, first at 0.04 s") != line.npos;
+    }));
+    for (const std::string& line : told(parsed(veil))) CHECK_THAT(line, !Contains("the wind pushes"));
+}
+
+TEST_CASE("cloth that moves at the end is told unless something drives it", "[findings]") {
+    const std::string falling = std::string(short_clip) + "[cloth]\nparticles = [5, 5]\n";
+    CHECK_THAT(told(parsed(falling)).at(0), Contains("still moves at the end, at 0.7"));  // g · 0.08 s
+    CHECK(told(parsed(falling + "[wind]\nvelocity = [1, 0, 0]\n")).empty());
+    CHECK(told(parsed("gravity = [0, 0, 0]\n" + falling)).empty());
+    // Carried along, then let stand.
+    const std::string carried = falling + "[[cloth.pin]]\nedge = \"u0\"\nmotion = [{ time = 0 }, { time = ";
+    CHECK(told(parsed(carried + "1, position = [1, 0, 0] }]\n")).empty());
+    CHECK(!told(parsed(carried + "0.05, position = [0.1, 0, 0] }]\n")).empty());
+}
+
+TEST_CASE("effects that had nothing to do are told by name", "[findings]") {
+    const std::string still = "gravity = [0, 0, 0]\n" + std::string(short_clip) +
+                              "[cloth]\nparticles = [5, 5]\ncenter = [0, 1, 0]\n";
+    const std::string ball = "[[solid]]\nshape = \"sphere\"\nradius = 0.1\n";
+    CHECK_THAT(told(parsed(still + ball)).at(0), Contains("the solid was never touched"));
+    CHECK_THAT(told(parsed(still + ball + ball + "center = [0, -1, 0]\n")).at(0),
+               Contains("all the solids were never touched"));
+    CHECK_THAT(told(parsed(still + "[self_collision]\n")).at(0), Contains("[self_collision] never had"));
+    CHECK_THAT(told(parsed(still + "[wind]\ndensity = 0\nvelocity = [3, 0, 0]\n")).at(0),
+               Contains("[wind] did nothing"));
+    // One that is touched is no news.
+    const std::string lying = std::string(short_clip) +
+                              "[cloth]\nparticles = [5, 5]\ncenter = [0, 0.004, 0]\n"
+                              "[[solid]]\nshape = \"plane\"\n";
+    CHECK(told(parsed(lying)).empty());
 }
 
 TEST_CASE("edges through a rod, a plate and a corner are counted, what sags onto a ball is not",

@@ -174,7 +174,7 @@ TEST_CASE("effects that the scene does not name hold no memory and take no time"
         {"self-collision",
          forces.self_collision.springs.i.capacity() + forces.self_collision.forces.force.capacity() +
              forces.self_collision.adjacency.start.capacity() + forces.self_collision.x_searched.capacity() +
-             forces.self_collision.candidate_i.capacity() + forces.self_collision.voxel_start.capacity() +
+             forces.self_collision.pairs.capacity() + forces.self_collision.voxel_start.capacity() +
              forces.self_collision.found.capacity()},
         {"comparison", ws.whole.system.entries.capacity() + ws.whole.solves.capacity()},
         {"multistep", simulation.state.x_previous.capacity() + simulation.state.v_previous.capacity()},

@@ -158,3 +158,33 @@ TEST_CASE("auto counts the contact that every substep looks into", "[sweep]") {
     CHECK(costs(in_air, h).cheaper() == Integrator::explicit_);
     CHECK(costs(beside_ball, h).cheaper() == Integrator::adaptive_imex);
 }
+
+TEST_CASE("a solid that the cloth can't come to changes nothing that auto chooses by", "[sweep]") {
+    Scene scene = swinging(20);
+    scene.solids.clear();
+    const auto costs = [&] {
+        const Simulation simulation = start_simulation(scene);
+        PlanMemory fresh;
+        const IntegratorCosts counted = count_costs(simulation.model, simulation.options, 1e-3, fresh);
+        return std::pair(counted.explicit_cost, counted.coupled_cost);
+    };
+    const auto in_air = costs();
+    Solid& ball = scene.solids.emplace_back();
+    ball.shape = Shape::sphere;
+    ball.center = ball.pivot = {0, 0, 1000};
+    CHECK(costs() == in_air);
+    ball.motion = {{0, {0, 0, 0}, {0, 0, 0}}, {0.5, {0, 5, 0}, {0, 30, 0}}};
+    CHECK(costs() == in_air);
+    // On its way here it is counted.
+    ball.motion.back().position = {0, 0, -1000};
+    CHECK(costs() != in_air);
+    ball.motion.clear();
+    ball.fall.emplace().velocity = {0, 0, -2000};
+    CHECK(costs() != in_air);
+    // So is a floor, however deep, under what falls on and on.
+    ball = {};
+    ball.shape = Shape::plane;
+    ball.center = {0, -20, 0};
+    scene.clip.duration = 10;
+    CHECK(costs() != in_air);
+}

@@ -55,3 +55,7 @@ TEST_CASE("completion knows the commands, their options and the words that these
     CHECK(has(script, "leave) options=\"-h --help --loud\" ;;"));
     CHECK_FALSE(has(script, "WALL"));
 }
+
+TEST_CASE("scripts are told the commands' names", "[tool]") {
+    CHECK(command_names(Small().app) == "paint\nleave\n");
+}
