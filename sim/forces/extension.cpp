@@ -28,9 +28,10 @@ void extension_forces(const ExtensionSprings& springs, std::span<const double> m
         const double squared = d.squaredNorm();
         // What is taut now and slack ahead still resists: dropped, it would let the next step start
         // over-taut.
-        const bool reached =
-            squared > reach * reach || (looks_ahead && now.squaredNorm() > reach * reach && squared > 0);
-        const bool joins = !taut.empty() && taut[s] != 0;
+        const int mark = taut.empty() ? 0 : taut[s];
+        const bool reached = squared > reach * reach || (mark == 2 && squared > 0) ||
+                             (looks_ahead && now.squaredNorm() > reach * reach && squared > 0);
+        const bool joins = mark == 1;
         const double length = reached || joins ? std::sqrt(squared) : 0.0;
         const SpringSplit split{bears, is_taut(length, rest), reached, joins, squared > 0};
         out.state[s] = split.state();
@@ -48,26 +49,44 @@ void extension_forces(const ExtensionSprings& springs, std::span<const double> m
     });
 }
 
-bool mark_missed(const ExtensionSprings& springs, std::span<const double> mass, double h,
-                 const Splitting& splitting, std::span<const Vec3> end, const ExtensionForces& forces,
-                 double strain, std::vector<std::uint8_t>& taut) {
+Misjudged correct_taut(const ExtensionSprings& springs, std::span<const double> mass, double h,
+                       const Splitting& splitting, std::span<const Vec3> x, std::span<const Vec3> end,
+                       const ExtensionForces& forces, double strain, std::vector<std::uint8_t>& taut) {
     taut.resize(springs.size(), 0);
-    std::vector<std::uint8_t> found(chunk_count(springs.size()), 0);
+    std::vector<Misjudged> found(chunk_count(springs.size()));
     parallel_chunks(springs.size(), [&](std::size_t chunk, std::size_t first, std::size_t last) {
         for (std::size_t s = first; s < last; ++s) {
-            if (taut[s] || forces.state[s] != SpringState::inactive) continue;
             const std::uint32_t i = springs.i[s], j = springs.j[s];
-            const double rest = springs.rest[s], squared = (end[j] - end[i]).squaredNorm();
-            if (!is_taut(squared, rest * rest)) continue;
-            const double of_spring =
-                kappa_between(h, mass[i], mass[j], springs.stiffness[s], springs.damping[s]);
+            const double rest = springs.rest[s], stiffness = springs.stiffness[s];
+            // Neither pulls nor pushes: what has its Jacobian alone, or is marked but has no line to act on.
+            const bool left_out = forces.state[s] == SpringState::inactive;
+            if (taut[s] != (left_out ? 0 : 1) || forces.state[s] == SpringState::explicit_) continue;
+            const double squared = (end[j] - end[i]).squaredNorm();
+            if (is_taut(squared, rest * rest) != left_out) continue;
+            if (!left_out) {
+                // On its line it pushes at the end with k_s times what it lacks there.
+                const Vec3 d = x[j] - x[i];
+                const double length = d.norm();
+                if (is_taut(length, rest) || length == 0) continue;
+                taut[s] = 2;
+                const double longer = d.dot(end[j] - end[i]) / length - length;
+                found[chunk].energy += std::max(0.0, stiffness * (rest - length - longer) * longer);
+                continue;
+            }
+            const double of_spring = kappa_between(h, mass[i], mass[j], stiffness, springs.damping[s]);
             if (is_explicit(of_spring, splitting.threshold(s < springs.stretch_count))) continue;
             taut[s] = 1;
-            const double longer = (1 + strain) * rest;
-            if (is_taut(squared, longer * longer)) found[chunk] = 1;
+            const double length = std::sqrt(squared);
+            found[chunk].energy += extension_energy(length, rest, stiffness);
+            if (is_taut(length, (1 + strain) * rest)) found[chunk].missed = true;
         }
     });
-    return std::find(found.begin(), found.end(), 1) != found.end();
+    Misjudged all;
+    for (const Misjudged& of : found) {
+        all.missed = all.missed || of.missed;
+        all.energy += of.energy;
+    }
+    return all;
 }
 
 void mark_taut(const ExtensionSprings& springs, std::span<const Vec3> end, std::vector<std::uint8_t>& taut) {

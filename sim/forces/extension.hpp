@@ -71,22 +71,30 @@ inline SpringLine line_of(const SpringFamily& family, std::uint32_t s) {
 }
 
 /// Evaluates all springs at (x, v) for a step of h seconds. `band` ≥ 0: a slack spring with l > (1 − band) L
-/// that is handled implicitly gets its Jacobian (t = 0) but no force, so that a pull can travel through it
-/// within the step. `taut`, (springs) or empty, marks slack springs that will be taut when the step ends:
-/// handled implicitly, such a spring gets its Jacobian (t = 0) and the force k_s (l − L) + k_d û·(v_j − v_i)
-/// on its line, a push that the linearised end-of-step force outgrows. `ahead`, (particles) or empty: where
-/// implicit springs are evaluated instead of at x, but for the line of their damping; one within the band's
-/// reach at x but slack there gets its Jacobian (t = 0) and no force.
+/// that is handled implicitly gets its Jacobian (t = 0) but no force, so that a pull can travel through it.
+/// `taut`, (springs) or empty, marks slack springs that will be taut when the step ends (1) or nearly (2): if
+/// implicit the first get their Jacobian (t = 0) and the force k_s (l − L) + k_d û·(v_j − v_i) on their line,
+/// a push that the linearised end-of-step force outgrows; the others their Jacobian alone. `ahead`,
+/// (particles) or empty: where implicit springs are evaluated instead of at x, but for the line of their
+/// damping; one within the band's reach at x but slack there gets its Jacobian (t = 0) and no force.
 void extension_forces(const ExtensionSprings& springs, std::span<const double> mass, std::span<const Vec3> x,
                       std::span<const Vec3> v, double h, const Splitting& splitting, double band,
                       ExtensionForces& out, std::span<const std::uint8_t> taut = {},
                       std::span<const Vec3> ahead = {});
 
-/// Marks springs of a step of h seconds that are implicit but were inactive in `forces` and are longer than L
-/// at `end`, (particles); keeps earlier marks. True if it marked one that is longer than (1 + strain) L.
-bool mark_missed(const ExtensionSprings& springs, std::span<const double> mass, double h,
-                 const Splitting& splitting, std::span<const Vec3> end, const ExtensionForces& forces,
-                 double strain, std::vector<std::uint8_t>& taut);
+/// What a solve took implicit springs for and its end shows otherwise.
+struct Misjudged {
+    bool missed = false;  ///< one that was left out is longer than (1 + strain) L
+    double energy = 0;    ///< J that the others' motion has got from nowhere: what springs that were left out
+                          ///< hold, and what slack ones that were to be taut have pushed with
+};
+
+/// Corrects the marks `taut`, (springs), of a step of h seconds from x to `end`, (particles): an implicit
+/// spring that was inactive in `forces` and is longer than L at the end is marked 1, one that was marked 1,
+/// slack, and still is, is marked 2.
+Misjudged correct_taut(const ExtensionSprings& springs, std::span<const double> mass, double h,
+                       const Splitting& splitting, std::span<const Vec3> x, std::span<const Vec3> end,
+                       const ExtensionForces& forces, double strain, std::vector<std::uint8_t>& taut);
 
 /// Marks springs longer than L at `end`, (particles).
 void mark_taut(const ExtensionSprings& springs, std::span<const Vec3> end, std::vector<std::uint8_t>& taut);

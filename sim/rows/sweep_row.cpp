@@ -61,8 +61,9 @@ UNRAVEL_VERSIONS void split_row(const RowState& a, const RowState& b, double res
             const double r = inverse_root(squared);
             const double rate = (dx * (bu[i] - au[i]) + dy * (bv[i] - av[i]) + dz * (bw[i] - aw[i])) * r;
             const double pull = spring_pull(stiffness[i], squared * r - rest, damping[i], rate).sum() * r;
-            const SpringSplit split{is_explicit[i] > 0, is_taut(exact, taut_squared), exact > reach_squared,
-                                    will_be_taut[k] != 0, exact > 0};
+            const bool reached = (exact > reach_squared) | ((will_be_taut[k] == 2) & (exact > 0));
+            const SpringSplit split{is_explicit[i] > 0, is_taut(exact, taut_squared), reached,
+                                    will_be_taut[k] == 1, exact > 0};
             const double t = split.pulls() ? pull : 0.0;
             force[0][k] = t * dx;
             force[1][k] = t * dy;

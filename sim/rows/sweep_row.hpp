@@ -36,7 +36,7 @@ void extension_row(const RowState& a, const RowState& b, double rest, const doub
 /// The same, and what each spring does in an implicit–explicit step (paper Sec. 3.5), as extension_forces()
 /// has it.
 ///   is_explicit  (springs) 1 where κ is within the threshold, else 0
-///   taut         (springs) 1: will be taut at the step's end; or null
+///   taut         (springs) 1: will be taut at the step's end, 2: nearly; or null
 ///   reach        m, length up to which a slack spring that is implicit stays inactive, (1 − band) L
 ///   state        (springs) written; null where another does
 void split_row(const RowState& a, const RowState& b, double rest, const double* stiffness,

@@ -16,6 +16,10 @@ namespace unravel::sim {
 namespace {
 
 constexpr std::size_t most_named = 16;
+// Springs that come and go faster than a step can tell put energy in. Where they have, those that are slack
+// by less than this share resist, too, which only ever takes energy; it would brake all slack cloth
+// elsewhere.
+constexpr double calming_band = 0.02;
 // Energy that a step may add, as a share of what the run has to spend.
 constexpr double rounding_share = 1e-10;
 
@@ -219,13 +223,17 @@ StepReport take_again(const ClothModel& model, const StepOptions& options, doubl
                       const StepReport& first, ClothState& state, StepWorkspace& ws) {
     StepOptions thorough = options;
     thorough.energy_limit = energy;
+    thorough.activation_band = std::max(options.activation_band, calming_band);
     ClothState once = state;
     std::swap(state, ws.before);
     const StepReport second = step(model, thorough, h, state, ws);
     const bool better = total_energy(second) < total_energy(first);
     if (!better) std::swap(state, once);
     StepReport report = better ? second : first;
-    report.converged = first.converged;  // how far the end was met shows in the energy
+    // How far the end was met shows in the energy.
+    const StepTrace trace = trace_of(model, ws);
+    report.converged =
+        better ? std::ranges::all_of(trace.solves, &ComponentSolve::converged) : first.converged;
     report.cg_iterations = first.cg_iterations + second.cg_iterations;
     report.cg_iterations_max = std::max(first.cg_iterations_max, second.cg_iterations_max);
     report.rvm = first.rvm + second.rvm;

@@ -152,7 +152,7 @@ struct Cloth {
     double jitter = 0;       ///< m, seeded random displacement along the normal at the start
     std::uint32_t seed = 1;  ///< of the jitter
     Material material;
-    BendModel bend_model = BendModel::buckling;
+    BendModel bend_model = BendModel::curvature;
     std::vector<Region> regions;
     std::vector<Pin> pins;
     Repeat repeat;  ///< as read; the loader has replaced it by cloths of their own
@@ -225,7 +225,7 @@ struct Solver {
     bool decompose = true;      ///< false: one system over all particles
     BendTreatment bend = BendTreatment::scheme;
     Activation activation = Activation::predicted;
-    double activation_band = 0.02;  ///< springs with l > (1 − band) L get their Jacobian, but no force
+    double activation_band = 0;  ///< springs with l > (1 − band) L get their Jacobian, but no force
     std::optional<AdaptiveStep> adaptive;  ///< absent: every step is `step`
 };
 

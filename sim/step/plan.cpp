@@ -45,6 +45,10 @@ void plan_integrator(const ClothModel& model, const StepOptions& options, double
         why_not.empty() ? "every cloth is a grid, and all that acts on it has a version along rows" : why_not;
 }
 
+bool bends_over_two_cells(const GridSprings& grid) {
+    return grid.bend_u.count() + grid.bend_v.count() > 0 && !arcs_between_neighbours(grid);
+}
+
 void plan_cloths(const ClothModel& model, const StepOptions& options, StepPlan& plan) {
     const bool explicit_step = plan.way != StepPlan::Way::coupled, swept = plan.way == StepPlan::Way::swept;
     const auto general = std::ranges::find(plan.forces.terms, false, &ForcePlan::Term::by_rows);
@@ -56,7 +60,9 @@ void plan_cloths(const ClothModel& model, const StepOptions& options, StepPlan& 
     const bool bends = std::ranges::any_of(plan.forces.terms, [](const ForcePlan::Term& planned) {
         return planned.implicit && planned.term == &bending_term;
     });
+    auto grid = model.grids.begin();  // one of each cloth that is a grid
     for (const ClothPatch& patch : model.cloths) {
+        const bool bends_beyond = patch.grid() && bends && bends_over_two_cells(*grid++);
         StepPlan::Cloth& cloth = plan.cloths.emplace_back();
         cloth.name = patch.name;
         cloth.by_rows = by_rows;
@@ -64,9 +70,10 @@ void plan_cloths(const ClothModel& model, const StepOptions& options, StepPlan& 
         if (explicit_step) {
             cloth.solver = "none";
             cloth.solver_because = "nothing is implicit";
-        } else if (patch.grid() && bends) {
+        } else if (bends_beyond) {
             cloth.solver = "rows in double precision";
-            cloth.solver_because = "bending is implicit, which couples by more than a grid's springs";
+            cloth.solver_because =
+                "bending is implicit and by arcs over two cells, which no grid's solver has";
         } else if (!patch.grid() || !may_use_grids(options.solve)) {
             cloth.solver = "rows in double precision";
             cloth.solver_because = patch.grid() ? "solver.preconditioner or solver.tolerance asks for it"

@@ -35,8 +35,9 @@ void solve_stage(const ClothModel& model, const StepOptions& options, std::span<
 /// `dv` (particles) is Δv [m/s].
 void predict_taut(const ClothModel& model, std::span<const Vec3> dv, StepWorkspace& ws);
 
-/// A second solve where the first over-extends springs that were slack, by what may not be missed: they join
-/// in from the start.
+/// Solves again where the first solve over-extends springs that were slack, by what may not be missed, or
+/// where they and slack ones that were expected to be taut, and push, have put in more energy than the step
+/// loses: those act from the start, these don't.
 void solve_again_where_taut(const ClothModel& model, const StepOptions& options, StageTimer& timer,
                             StepWorkspace& ws, StepReport& report);
 

@@ -97,6 +97,7 @@ RowForces& RowForces::operator=(RowForces&&) noexcept = default;
 
 void RowForces::prepare(const ClothModel& model, const ForceMemory& forces, const ForceSettings& settings) {
     RowForcesMemory& memory = *memory_;
+    memory.settings.band = settings.band;  // no table depends on it
     if (memory.model == model.mass.data() && memory.particles == model.size() && memory.settings == settings)
         return;
     memory.model = model.mass.data();

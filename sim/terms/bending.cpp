@@ -22,6 +22,7 @@ void limit_bends(const ClothModel& model, double h, ForceMemory& memory) {
 }
 
 void split_curvature(const ClothModel& model, const ForceSettings& settings, CurvatureSplit& split) {
+    split.settings.band = settings.band;  // it has no say
     if (split.settings == settings && split.is_implicit.size() == model.curvature.size()) return;
     split.settings = settings;
     split.is_implicit =
@@ -138,6 +139,19 @@ void measure_bends(const ClothModel& model, std::span<const Vec3> x, const Force
     });
 }
 
+// ½ c |Δy|² of each explicit stencil. What arcs add, whose slope is cut to what the step bears, comes from
+// nowhere and is not given back.
+double gain_of_explicit_bends(const ClothModel& model, const StepEnds& step, const ForceMemory& memory,
+                              MeasureWorkspace& ws) {
+    const BendingMemory& own = memory.bending;
+    const CurvatureStencils& stencils = model.curvature;
+    return ws.sum(stencils.size(), [&](std::size_t s) {
+        if (own.is_implicit && own.split.is_implicit[s] != 0) return 0.0;
+        const Vec3 bent = bend_of(stencils, s, step.x_next) - bend_of(stencils, s, step.x);
+        return 0.5 * stencils.stiffness[s] * bent.squaredNorm();
+    });
+}
+
 bool bends_at_all(const Cloth& cloth) {
     double most = cloth.material.bend;
     for (const Region& region : cloth.regions) {
@@ -165,6 +179,7 @@ const ForceTerm bending_term{.name = "bending",
                              .may_be_implicit = may_be_implicit,
                              .rows = &bend_rows_version,
                              .measure = measure_bends,
+                             .explicit_gain = gain_of_explicit_bends,
                              .effects = list_bending};
 
 }  // namespace unravel::sim

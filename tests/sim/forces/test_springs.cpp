@@ -158,3 +158,35 @@ TEST_CASE("without shear stiffness there are no shear springs, whichever path th
             CHECK(apart < 1e-7);
         }
 }
+
+TEST_CASE("a spring that was taken for taut and pushes keeps its Jacobian and loses its force") {
+    // Three springs on lines of their own, implicit: left out and to be taut, marked and still slack, marked
+    // and taut at the end.
+    ExtensionSprings springs;
+    std::vector<Vec3> x, v(6, Vec3::Zero()), end;
+    const double before[] = {0.99, 0.9, 0.98}, after[] = {1.02, 0.95, 1.01};
+    for (std::uint32_t s = 0; s < 3; ++s) {
+        springs.add(2 * s, 2 * s + 1, 1.0, 100.0, 0.0);
+        for (const double length : {0.0, before[s]}) x.emplace_back(length, s, 0);
+        for (const double length : {0.0, after[s]}) end.emplace_back(length, s, 0);
+    }
+    springs.stretch_count = 3;
+    const std::vector<double> mass(6, 1.0);
+    constexpr double h = 0.1;
+    std::vector<std::uint8_t> taut{0, 1, 1};
+    ExtensionForces forces;
+    extension_forces(springs, mass, x, v, h, {}, 0.0, forces, taut);
+    CHECK(forces.force[1].x() == Approx(-10));
+    const Misjudged wrong = correct_taut(springs, mass, h, {}, x, end, forces, 0.01, taut);
+    CHECK(wrong.missed);
+    // What the first one holds at the end, and what the second has pushed with on its way.
+    CHECK(wrong.energy == Approx(0.5 * 100 * 0.02 * 0.02 + 100 * 0.05 * 0.05));
+    CHECK(taut == std::vector<std::uint8_t>{1, 2, 1});
+
+    extension_forces(springs, mass, x, v, h, {}, 0.0, forces, taut);
+    for (const SpringState state : forces.state) CHECK(state == SpringState::implicit);
+    CHECK(forces.force[1].isZero(0));
+    const Misjudged again = correct_taut(springs, mass, h, {}, x, end, forces, 0.01, taut);
+    CHECK(!again.missed);
+    CHECK(again.energy == 0);
+}

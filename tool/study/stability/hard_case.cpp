@@ -60,9 +60,9 @@ std::vector<char> pinned_particles_at(const ClothModel& model, double t) {
 }
 
 // Follows the energy: how far it rises above its least so far. `swing`: where steps with explicit springs
-// change in length, each keeps another H + h/2 v·f, and no one quantity is kept by all. Whatever they
-// keep lies between H - h/2 |v·f| and H + h/2 |v·f|; what rises is then the least that it can be above the
-// most that it can have been.
+// change in length, each keeps another H + h/2 v·f, and where bending is explicit and springs are not, no
+// step keeps just that: no one quantity is kept by all. Whatever they keep lies between H - h/2 |v·f| and H +
+// h/2 |v·f|; what rises is then the least that it can be above the most that it can have been.
 class EnergyWatch {
 public:
     EnergyWatch(const Scene& scene, const Simulation& simulation, bool swing) : swing_(swing) {
@@ -77,7 +77,7 @@ public:
     /// Largest rise so far, over the energy that there is.
     double add(const Simulation& simulation, const StepReport& report) {
         double energy = report.kinetic + report.potential;
-        const bool swings = swing_ && report.explicit_ > 0;
+        const bool swings = swing_ && (report.explicit_ > 0 || simulation.model.curvature.size() > 0);
         ShadowTerms shadow;
         if (lags_ || swings) {
             prepare_terms(simulation.model, report.h / report.substeps, forces_);

@@ -15,7 +15,7 @@ namespace {
 std::string cantilever_scene(std::array<int, 2> grid, double steps, double bend) {
     const double length = 0.1, cell = length / (grid[1] - 2);
     return fmt::format(
-        "[clip]\nduration = 3\nfps = 10\n[cloth]\nbend_model = \"curvature\"\nparticles = [{}, {}]\nsize = "
+        "[clip]\nduration = 3\nfps = 10\n[cloth]\nparticles = [{}, {}]\nsize = "
         "[0.01, {}]\ndensity = 0.2\n"
         "material = {{ stretch = 1000, shear = 50, bend = {}, stretch_damping = 0.01 }}\n"
         "[[cloth.pin]]\nparticles = [0, {}, 0, 1]\n[wind]\ndrag = 2.0\n[solver]\nstep = \"1/{}\"\n",
@@ -87,11 +87,11 @@ VerifyCase::Result verify_tube(bool) {
     VerifyCase::Result result;
     for (const std::array<int, 2> grid : {std::array{21, 11}, std::array{41, 41}, std::array{41, 161}}) {
         for (const int axis : {0, 1}) {
-            Simulation simulation = verify_simulation(
-                fmt::format("gravity = [0, 0, 0]\n[cloth]\nbend_model = \"curvature\"\nparticles = [{}, "
-                            "{}]\nsize = [0.5, 0.4]\nmaterial = {{ "
-                            "bend = 1e-5 }}\n",
-                            grid[0], grid[1]));
+            Simulation simulation =
+                verify_simulation(fmt::format("gravity = [0, 0, 0]\n[cloth]\nparticles = [{}, "
+                                              "{}]\nsize = [0.5, 0.4]\nmaterial = {{ "
+                                              "bend = 1e-5 }}\n",
+                                              grid[0], grid[1]));
             roll_up(simulation, axis);
             const double round = axis == 0 ? 0.5 : 0.4, cells = grid[static_cast<std::size_t>(axis)] - 1;
             const double curvature = 2 * std::sin(std::numbers::pi / cells) / (round / cells);

@@ -89,7 +89,7 @@ VerifyCase::Result verify_slack(bool fast) {
                 "[clip]\nduration = 0.6\nfps = 50\n[cloth]\nparticles = [{}, {}]\nsize = [1, 1]\nrotation = "
                 "[90, 0, "
                 "0]\ndensity = 0.1\nmaterial = {{ preset = \"silk\" }}\n[[cloth.pin]]\ncorner = [\"u0v0\"]\n"
-                "[wind]\n[solver]\nactivation_band = 0\nstep = \"1/{}\"\n",
+                "[wind]\n[solver]\nstep = \"1/{}\"\n",
                 grid[0], grid[1], steps));
             const double start = centre_of(simulation).y();
             run_until(simulation, until);
