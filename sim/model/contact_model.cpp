@@ -6,6 +6,7 @@
 
 #include "sim/mesh/mesh_cloth.hpp"
 #include "sim/mesh/polygon_mesh.hpp"
+#include "sim/solids/shape.hpp"
 #include "sim/surface/closest.hpp"
 #include "sim/surface/feature_pairs.hpp"
 
@@ -155,6 +156,27 @@ bool ContactModel::are_near(FeaturePair kind, const std::array<std::uint32_t, 4>
 
 double ContactModel::pair_thickness(std::uint32_t p, std::uint32_t q) const {
     return 0.5 * (thickness[surface.cloth[p]] + thickness[surface.cloth[q]]);
+}
+
+double widest_spacing(const ClothModel& model) {
+    double widest = 0;
+    for (std::uint32_t s = 0; s < model.springs.stretch_count; ++s)
+        widest = std::max(widest, model.springs.rest[s]);
+    return widest;
+}
+
+bool needs_surfaces(const Solid& solid, double spacing) {
+    if (solid.shape == Shape::plane || solid.shape == Shape::mesh) return false;
+    const double radius = law_of(solid.shape).rounding(solid);
+    return spacing > 2 * std::sqrt(solid.offset * (2 * radius + solid.offset));
+}
+
+void choose_solid_contacts(ClothModel& model) {
+    const double spacing = widest_spacing(model);
+    for (Solid& solid : model.solids) {
+        if (solid.contact != SolidContact::automatic) continue;
+        solid.contact = needs_surfaces(solid, spacing) ? SolidContact::surface : SolidContact::particles;
+    }
 }
 
 std::shared_ptr<const ContactModel> make_contact_model(const Scene& scene, const ClothModel& model,

@@ -25,6 +25,18 @@ struct ContactModel {
     double pair_thickness(std::uint32_t p, std::uint32_t q) const;
 };
 
+/// The longest thread between particles of the cloth that are neighbours, at rest [m].
+double widest_spacing(const ClothModel& model);
+
+/// Whether cloth may sag into a solid between particles `spacing` apart that it holds off: a chord between
+/// two points at its offset d from a rounding of radius r meets it where it is longer than 2 √(d (2r + d)).
+/// Never of planes, nor of meshes, of which edges and faces are not held off.
+bool needs_surfaces(const Solid& solid, double spacing);
+
+/// Decides what the scene leaves open of a model that has its springs and solids: solids that particles may
+/// miss hold off edges and faces, too.
+void choose_solid_contacts(ClothModel& model);
+
 /// Builds it for a model that has its cloths, springs and masses; null where crossings can't be: a single
 /// cloth without self-collision, and no solid but planes and meshes. Thickness and near particles are only
 /// there where cloth meets cloth between surfaces. A thickness that the scene leaves open is that of cloth of

@@ -266,10 +266,7 @@ SelfCollision fitting(SelfCollision settings, std::span<const Grid> grids, const
 }  // namespace
 
 bool ClothModel::solids_by_surfaces() const {
-    // No edge cuts a plane whose ends are both outside: a plane needs no more than particles.
-    return std::ranges::any_of(solids, [](const Solid& solid) {
-        return solid.contact == ContactMethod::surface && solid.shape != Shape::plane;
-    });
+    return std::ranges::any_of(solids, &Solid::by_surfaces);
 }
 
 AirCells air_cells(const ClothModel& model) {
@@ -356,6 +353,7 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
         model.self_collision = fitting(*scene.self_collision, grids, model);
         find_mesh_neighbours(model);
     }
+    choose_solid_contacts(model);
     model.contact = make_contact_model(scene, model, placement);
     model.spring_adjacency = !model.grids.empty() && model.grids.size() == model.cloths.size()
                                  ? adjacency_of(model.grids)

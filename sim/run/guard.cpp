@@ -206,8 +206,7 @@ Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
     const double of_rounding = energy_of_rounding(model, start, h);
     guard.energy = height + 2.0 * (spent + of_rounding);
     guard.total = report.kinetic + report.potential;
-    // What springs between surfaces hold is counted by nobody yet.
-    if (!model.by_surfaces()) guard.rounding = rounding_share * spent + of_rounding;
+    guard.rounding = rounding_share * spent + of_rounding;
     return guard;
 }
 

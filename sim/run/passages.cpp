@@ -1,75 +1,13 @@
 #include "sim/run/passages.hpp"
 
 #include <algorithm>
-#include <limits>
 
-#include "sim/solids/depth.hpp"
+#include "sim/self_collision/solid_cuts.hpp"
 #include "sim/solids/motion.hpp"
-#include "sim/solids/shape.hpp"
 
 namespace unravel::sim {
 
 namespace {
-
-// To which depths in solids are known [m]; what is less deep touches.
-constexpr double precision = 5e-4, touching_depth = 1e-6;
-// Cosine below which two places of a solid look different ways.
-constexpr double other_way = 0.5;
-
-// The cloth in the frame of one solid of a closed form. All of those are convex: a distance to one is nowhere
-// less than the tangent planes at particles say.
-struct CutView {
-    const Solid& solid;
-    std::vector<Vec3> local, slope;  // (particles) where it is; the distance's gradient there, where known
-    std::vector<double> distance;    // (particles) m; unless known, a lower bound
-    std::vector<std::uint8_t> known;
-
-    CutView(const Solid& of, const Pose& to_local, std::span<const Vec3> x, double longest)
-        : solid(of), local(x.size()), slope(x.size()), distance(x.size()), known(x.size()) {
-        const double radius = law_of(solid.shape).reach(solid);
-        parallel_each(x.size(), [&](std::size_t p) {
-            local[p] = to_local * x[p];
-            distance[p] = local[p].norm() - radius;
-            known[p] = distance[p] <= longest;
-            if (known[p]) distance[p] = signed_distance(solid, local[p], &slope[p]);
-        });
-    }
-
-    // A lower bound of the distance on an edge or a triangle.
-    template <std::size_t N>
-    double bound(const std::array<std::uint32_t, N>& corners) const {
-        double bound = -std::numeric_limits<double>::infinity();
-        for (const std::uint32_t p : corners) {
-            if (!known[p]) continue;
-            double here = distance[p];
-            for (const std::uint32_t q : corners)
-                here = std::min(here, distance[p] + slope[p].dot(local[q] - local[p]));
-            bound = std::max(bound, here);
-        }
-        // Farther than the longest edge from all corners, none of them known.
-        return std::isinf(bound) ? 1.0 : bound;
-    }
-
-    bool cuts(const std::array<std::uint32_t, 2>& edge) const {
-        const auto& [a, b] = edge;
-        const bool in_a = distance[a] < -touching_depth, in_b = distance[b] < -touching_depth;
-        if (in_a || in_b) return in_a != in_b;
-        if (bound(edge) >= -touching_depth) return false;
-        const double depth = -least_on_edge(solid, nullptr, {local[a], local[b]}, precision);
-        return depth > solid.offset || (depth > touching_depth && slope[a].dot(slope[b]) < other_way);
-    }
-    double depth(const std::array<std::uint32_t, 3>& face) const {
-        if (bound(face) >= -touching_depth) return 0;
-        const auto& [a, b, c] = face;
-        return -least_on_triangle(solid, nullptr, {local[a], local[b], local[c]}, precision);
-    }
-};
-
-double longest_edge(const Surface& surface, std::span<const Vec3> x) {
-    double longest = 0;
-    for (const auto& [a, b] : surface.edges) longest = std::max(longest, (x[a] - x[b]).squaredNorm());
-    return std::sqrt(longest);
-}
 
 void judge_solid(const ClothModel& model, std::uint32_t number, const CutView& view, Passages& out) {
     const Surface& surface = model.contact->surface;

@@ -139,6 +139,13 @@ constexpr Words words_of(ContactMethod) {
     return contact_method_words;
 }
 
+/// What of the cloth a solid holds off: what it takes to hold off all of it; or as above.
+enum class SolidContact { automatic, particles, surface };
+inline constexpr std::string_view solid_contact_words[] = {"auto", "particles", "surface"};
+constexpr Words words_of(SolidContact) {
+    return solid_contact_words;
+}
+
 enum class Weave { plain, twill, checks, stripes, solid };
 inline constexpr std::string_view weave_words[] = {"plain", "twill", "checks", "stripes", "solid"};
 constexpr Words words_of(Weave) {

@@ -196,10 +196,15 @@ struct Solid {
     Repeat repeat;             ///< as read; the loader has replaced it by solids of their own
     Friction friction;
     double offset = 0.004;  ///< m, distance at which cloth is held off the surface (its skin)
-    ContactMethod contact = ContactMethod::particles;  ///< what of the cloth it holds off
-    std::string color;                                 ///< "#rrggbb"; empty: the look's default
+    SolidContact contact = SolidContact::automatic;  ///< what of the cloth it holds off; a model has decided
+    std::string color;                               ///< "#rrggbb"; empty: the look's default
     SourcePlace place;
 
+    /// Whether it holds off edges and faces of the cloth, too. No edge cuts a plane whose ends are both
+    /// outside, so that a plane needs no more than particles.
+    bool by_surfaces() const {
+        return contact == SolidContact::surface && shape != Shape::plane && shape != Shape::mesh;
+    }
     /// Whether its place or its rotation changes.
     bool moves() const {
         return !motion.empty() || fall || (carried.by && (carried.triangle >= 0 || carried.by->moves()));
@@ -253,7 +258,7 @@ struct Wind {
 };
 
 struct SelfCollision {
-    ContactMethod method = ContactMethod::particles;  ///< `particles`: as in the paper, Sec. 2.2
+    ContactMethod method = ContactMethod::surface;  ///< `particles`: as in the paper, Sec. 2.2
     double thickness = 0;  ///< m; 0: from the particles' spacing; of surfaces from each cloth's density
     double stiffness = 0;  ///< N/m of a contact; 0: from the material
     double damping = 0;    ///< N·s/m; of surfaces 0 is a fifth of critical

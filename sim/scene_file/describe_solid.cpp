@@ -129,7 +129,9 @@ void describe(Fields& f, Solid& solid) {
     f.number({"offset", "m, distance at which cloth is held off the surface"}, solid.offset,
              {0, 1, false, "m"});
     f.choice(
-        {"contact", "what of the cloth it holds off: particles alone, or edges and faces too; not of meshes",
+        {"contact",
+         "what of the cloth it holds off: particles alone, or edges and faces too, which \"auto\" says where "
+         "cloth would sag into it between particles; not of meshes",
          false, !mesh || (!f.reading() && !f.writing())},
         solid.contact);
     f.text({"color", "\"#rrggbb\"; default: the look's"}, solid.color, TextKind::color);

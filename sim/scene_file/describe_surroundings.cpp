@@ -25,8 +25,10 @@ void describe(Fields& f, WindKey& key) {
 
 void describe(Fields& f, SelfCollision& self) {
     f.place(self.place);
-    f.choice({"method", "what touches what: particles alone, or vertices, edges and faces of the cloth"},
-             self.method);
+    f.choice(
+        {"method",
+         "what touches what: vertices, edges and faces of the cloth, or particles alone as in the paper"},
+        self.method);
     const bool surface = self.method == ContactMethod::surface || (!f.reading() && !f.writing());
     f.number({"thickness",
               "m, at which layers touch; 0: 0.75 of the particle spacing, or where surfaces touch that of "

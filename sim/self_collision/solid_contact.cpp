@@ -190,7 +190,7 @@ void find_solid_contacts(const ClothModel& model, const SolidPoses& poses, std::
     const std::size_t edges = surface.edges.size(), features = edges + surface.triangles.size();
     for (std::uint32_t s = 0; s < model.solids.size(); ++s) {
         const Solid& solid = model.solids[s];
-        if (solid.contact == ContactMethod::particles || solid.shape == Shape::plane) continue;
+        if (!solid.by_surfaces()) continue;
         SolidView view{model,
                        s,
                        model.solids[s],

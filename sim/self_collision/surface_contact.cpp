@@ -11,9 +11,10 @@ namespace {
 
 // A contact that is not closed yet is one when it would close by more than this share of the thickness.
 constexpr double closing_share = 0.01;
-// Pairs are searched for around the way of this many steps, and around this share of a thickness beyond it:
-// forces turn particles from the way that they seemed to go.
-constexpr double steps_ahead = 4, search_margin = 1;
+// Pairs are searched for around the way of this many steps, and beyond it around a thickness or this share of
+// the edges there, whichever is more: forces turn particles from the way that they seemed to go, by more than
+// thin cloth is thick, and neighbours come into it only where it is as wide as edges are long.
+constexpr double steps_ahead = 4, share_of_edges = 0.2;
 // Sine of the angle by which a face may rise from its edge towards the other edge.
 constexpr double rising = 0.3;
 // Sliding slower than this is rest, but for a creep [m/s].
@@ -210,6 +211,19 @@ void end_contacts(std::size_t particles, SurfaceContactWorkspace& ws) {
 
 namespace {
 
+void place_margins(const ContactModel& contact, std::span<const Vec3> x, std::vector<double>& margin) {
+    const Surface& surface = contact.surface;
+    margin.resize(x.size());
+    parallel_each(x.size(), [&](std::size_t p) {
+        const std::span<const std::uint32_t> edges = surface.edges_at.of(static_cast<std::uint32_t>(p));
+        double length = 0;
+        for (const std::uint32_t e : edges)
+            length += (x[surface.edges[e][0]] - x[surface.edges[e][1]]).norm();
+        if (!edges.empty()) length /= static_cast<double>(edges.size());
+        margin[p] = std::max(contact.thickness[surface.cloth[p]], share_of_edges * length);
+    });
+}
+
 // Finds all pairs that can come within their thickness while particles go from x towards `ahead`, and on at
 // that pace for a few steps, and a margin around that way.
 void search_pairs(const ClothModel& model, std::span<const Vec3> x, std::span<const Vec3> ahead,
@@ -218,6 +232,7 @@ void search_pairs(const ClothModel& model, std::span<const Vec3> x, std::span<co
     if (ws.model != model.contact) {
         ws.model = model.contact;
         ws.tree = contact.tree;
+        place_margins(contact, x, ws.margin);
     }
     // Motion that all share brings nothing nearer to anything.
     const Vec3 ride = mean_motion(x, ahead);
@@ -228,8 +243,7 @@ void search_pairs(const ClothModel& model, std::span<const Vec3> x, std::span<co
     parallel_each(n, [&](std::size_t p) {
         const double thickness = contact.thickness[contact.surface.cloth[p]];
         const Vec3 way = steps_ahead * (ahead[p] - x[p] - ride);
-        const Vec3 margin = Vec3::Constant(search_margin * thickness),
-                   reach = Vec3::Constant(0.5 * thickness);
+        const Vec3 margin = Vec3::Constant(ws.margin[p]), reach = Vec3::Constant(0.5 * thickness);
         const Vec3 end = x[p] + way;
         ws.boxes[p] = {x[p].cwiseMin(end) - margin, x[p].cwiseMax(end) + margin};
         reaching[p] = {ws.boxes[p].low - reach, ws.boxes[p].high + reach};

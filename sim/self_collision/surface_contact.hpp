@@ -38,6 +38,7 @@ struct SurfaceContactWorkspace {
     PairWatch watch;                            ///< which of them may do so in a step
     std::vector<Box> boxes;      ///< (particles) of the last search, less what reaches beyond them
     std::vector<Vec3> searched;  ///< (particles) where they were then [m]
+    std::vector<double> margin;  ///< (particles) m, of `boxes` around the way that they seemed to go
 
     std::vector<Stencil> stencils;    ///< (contacts) of this step
     std::vector<Vec3> force;          ///< (contacts) on r, at the start [N]

@@ -59,6 +59,7 @@ const ShapeLaw box_shape{
         },
     .half_extents = [](const Solid& solid) -> Vec3 { return 0.5 * solid.size; },
     .reach = [](const Solid& solid) { return 0.5 * solid.size.norm(); },
+    .rounding = [](const Solid& solid) { return std::min(solid.round, 0.5 * solid.size.minCoeff()); },
     .surface = box_surface,
 };
 

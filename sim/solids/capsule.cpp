@@ -36,6 +36,7 @@ const ShapeLaw capsule_shape{
         return {solid.radius, 0.5 * solid.height + solid.radius, solid.radius};
     },
     .reach = [](const Solid& solid) { return solid.radius + 0.5 * solid.height; },
+    .rounding = [](const Solid& solid) { return solid.radius; },
     .surface = capsule_surface,
 };
 

@@ -47,6 +47,10 @@ const ShapeLaw cylinder_shape{
         return {solid.radius, 0.5 * solid.height, solid.radius};
     },
     .reach = [](const Solid& solid) { return std::hypot(solid.radius, 0.5 * solid.height); },
+    .rounding =
+        [](const Solid& solid) {
+            return std::min({solid.round, solid.radius, 0.5 * solid.height});
+        },
     .surface = cylinder_surface,
 };
 

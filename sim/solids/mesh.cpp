@@ -27,6 +27,7 @@ const ShapeLaw mesh_shape{
     .distance = mesh_distance,
     .half_extents = mesh_half_extents,
     .reach = [](const Solid& solid) { return solid.geometry->reach; },
+    .rounding = nullptr,
     .surface = nullptr,
 };
 

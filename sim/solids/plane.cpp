@@ -19,6 +19,7 @@ const ShapeLaw plane_shape{
         },
     .half_extents = [](const Solid&) -> Vec3 { return Vec3::Constant(endless); },
     .reach = [](const Solid&) { return endless; },
+    .rounding = nullptr,
     .surface = nullptr,
 };
 

@@ -29,6 +29,8 @@ struct ShapeLaw {
     Vec3 (*half_extents)(const Solid& solid);
     /// Of the smallest ball about its centre [m].
     double (*reach)(const Solid& solid);
+    /// Radius of its tightest rounding [m]; 0: it has edges. Null: a plane, or a mesh.
+    double (*rounding)(const Solid& solid);
     /// Its surface, fine enough to look round at 1080p where `detail` is 1; less gives coarser, inscribed
     /// shapes. Null: a plane has no end, and a mesh has triangles of its own.
     ShapeSurface (*surface)(const Solid& solid, float detail);

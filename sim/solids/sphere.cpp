@@ -25,6 +25,7 @@ const ShapeLaw sphere_shape{
         },
     .half_extents = [](const Solid& solid) -> Vec3 { return Vec3::Constant(solid.radius); },
     .reach = [](const Solid& solid) { return solid.radius; },
+    .rounding = [](const Solid& solid) { return solid.radius; },
     .surface = sphere_surface,
 };
 

@@ -39,7 +39,8 @@ bool anything_acted(const ClothModel& model, const ClothState& after, const Step
     };
     StepEnds ends = ends_of(after, ws);
     ends.settings = ws.plan.step.forces.settings;
-    const bool touched = report.contacts > 0 || !before.contacts.empty();
+    const bool touched =
+        report.contacts > 0 || !before.contacts.empty() || !ws.contact.surfaces.stencils.empty();
     return (touched && std::ranges::any_of(model.solids, moves)) || std::ranges::any_of(model.pins, moved) ||
            input_of_forces(model, ends, ws) > 0;
 }
@@ -68,6 +69,37 @@ double work_of_constraints(const ClothModel& model, const ClothState& after, Ste
         }
     }
     return std::max(pins, 0.0) + std::max(solids, 0.0);
+}
+
+// What moving solids did through edges and faces: pushes and friction as the solve had them, along the way.
+double work_on_surfaces(const ClothModel& model, StepWorkspace& ws) {
+    const SurfaceContactWorkspace& surfaces = ws.contact.surfaces;
+    const Stage& stage = ws.stage;
+    double work = 0;
+    for (std::size_t k = 0; k < surfaces.stencils.size(); ++k) {
+        const Stencil& c = surfaces.stencils[k];
+        if (!moves(model.solids[static_cast<std::size_t>(surfaces.solid[k])])) continue;
+        Vec3 way = Vec3::Zero(), change = Vec3::Zero();
+        for (std::uint32_t i = 0; i < c.count; ++i) {
+            const std::uint32_t p = c.p[i];
+            const Vec3& dv = ws.linear.dv[p];
+            way += c.w[i] * (ws.base()[p] + stage.h * (stage.v_at[p] + dv) - ws.before.x[p]);
+            change += c.w[i] * dv;
+        }
+        Vec3 force = surfaces.force[k];
+        if (surfaces.state[k] == SpringState::implicit) {
+            const double along = c.along * c.u.dot(way) + c.damping_along * c.u.dot(change);
+            force -= along * c.u + c.damping_across * (change - c.u.dot(change) * c.u);
+        }
+        work += force.dot(way);
+    }
+    return std::max(work, 0.0);
+}
+
+// Whether cloth touched cloth between surfaces. What layers hold between them is measured by nobody, and what
+// is stopped after the solve is not mended by solving again.
+bool layers_touched(const StepWorkspace& ws) {
+    return std::ranges::any_of(ws.contact.surfaces.solid, [](std::int32_t solid) { return solid < 0; });
 }
 
 // Whether a particle at x, at the step's end, is inside a solid that moves.
@@ -108,12 +140,14 @@ double gain_of_putting_back(const ClothModel& model, const ClothState& after, co
 
 double energy_input(const ClothModel& model, const ClothState& after, const StepReport& report,
                     StepWorkspace& ws) {
+    if (layers_touched(ws)) return std::numeric_limits<double>::infinity();
     if (report.substeps > 1 || ws.plan.step.way == StepPlan::Way::swept) {
         const bool acted = anything_acted(model, after, report, ws);
         return acted ? std::numeric_limits<double>::infinity() : 0.0;
     }
     double input = input_of_forces(model, ends_of(after, ws), ws);
     if (!ws.constraints.all().empty()) input += work_of_constraints(model, after, ws);
+    input += work_on_surfaces(model, ws);
     input += gain_of_putting_back(model, after, report, ws);
     return input;
 }

@@ -10,7 +10,7 @@ namespace unravel::sim {
 /// J that pins, moving solids and forces (ForceTerm::put_in) have put into the cloth over the step; at least
 /// 0 each, for what they take is friction's and the air's. Counted from what held and pushed each particle,
 /// times how far it went; what does not act puts in nothing, wherever else it is. +∞ where something acted in
-/// a step of several parts, which are not looked into.
+/// a step of several parts, which are not looked into, and where cloth touched cloth between surfaces.
 double energy_input(const ClothModel& model, const ClothState& after, const StepReport& report,
                     StepWorkspace& ws);
 

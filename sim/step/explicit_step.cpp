@@ -53,7 +53,6 @@ StepReport swept_step(const ClothModel& model, const StepOptions& options, doubl
     return report;
 }
 
-// One step after the other; the report is the last one's, with all their times.
 StepReport substeps_in_turn(const ClothModel& model, const StepOptions& options, double h, int substeps,
                             ClothState& state, StepWorkspace& ws) {
     if (substeps == 1) return coupled_step(model, options, h, state, ws);
@@ -72,14 +71,19 @@ StepReport substeps_in_turn(const ClothModel& model, const StepOptions& options,
         state = std::move(start);
         throw;
     }
+    join_parts(start, h, static_cast<std::uint32_t>(substeps), times, state, report);
+    ws.before = std::move(start);
+    return report;
+}
+
+void join_parts(const ClothState& start, double h, std::uint32_t parts, const StageTimes& times,
+                ClothState& state, StepReport& report) {
     state.step = report.step = start.step + 1;
     state.t = report.t = start.t + h;
     state.h_previous = report.h = h;
     report.times = times;
-    report.substeps = static_cast<std::uint32_t>(substeps);
-    parallel_each(model.size(), [&](std::size_t p) { state.dv[p] = state.v[p] - start.v[p]; });
-    ws.before = std::move(start);
-    return report;
+    report.substeps = parts;
+    parallel_each(state.v.size(), [&](std::size_t p) { state.dv[p] = state.v[p] - start.v[p]; });
 }
 
 }  // namespace unravel::sim

@@ -68,6 +68,16 @@ StepReport swept_step(const ClothModel& model, const StepOptions& options, doubl
 StepReport substeps_in_turn(const ClothModel& model, const StepOptions& options, double h, int substeps,
                             ClothState& state, StepWorkspace& ws);
 
+/// coupled_step(), taken again in parts, as long as need be, where it would end with cloth in or behind a
+/// solid that holds off its surface: what is thin, or pulled at hard, is met before it is passed.
+StepReport uncut_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
+                      StepWorkspace& ws);
+
+/// Makes one step of h seconds of parts that were taken one after the other from `start`: the report is the
+/// last one's, with all their times.
+void join_parts(const ClothState& start, double h, std::uint32_t parts, const StageTimes& times,
+                ClothState& state, StepReport& report);
+
 /// What every kind of step ends with: components and constraints counted, the state measured.
 void finish_report(const ClothModel& model, const StepOptions& options, const ClothState& state,
                    StageTimer& timer, StepWorkspace& ws, StepReport& report);

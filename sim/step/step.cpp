@@ -91,8 +91,8 @@ std::uint32_t count_pulling(const ClothModel& model, std::span<const Contact> la
 
 // No surface passes through another on the way to the step's end; what is stopped moves accordingly.
 void stop_impacts(const ClothModel& model, double h, const ClothState& state, StepWorkspace& ws,
-                  ClothState& next, StepReport& report) {
-    StageTimer timer;
+                  StageTimer& timer, ClothState& next, StepReport& report) {
+    timer.lap(report.times.advance);
     const std::vector<Vec3> free = next.x;
     std::vector<std::uint8_t>& fixed = ws.contact.apart.fixed;
     fixed.assign(model.size(), 0);
@@ -183,6 +183,9 @@ StepReport step(const ClothModel& model, const StepOptions& options, double h, C
         case StepPlan::Way::coupled:
             break;
     }
+    // A multistep scheme looks back on a step as long as its own.
+    if (model.solids_by_surfaces() && !scheme_of(planned.integrator).multistep)
+        return uncut_step(model, planned, h, state, ws);
     return coupled_step(model, planned, h, state, ws);
 }
 
@@ -246,7 +249,7 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     if (model.solids_by_surfaces()) {
         keep_edges_outside(model, ws.contact.poses, ws.constraints, h, ws.contact.surfaces, state.x, state.v);
     }
-    if (model.cloth_by_surfaces()) stop_impacts(model, h, before, ws, state, report);
+    if (model.cloth_by_surfaces()) stop_impacts(model, h, before, ws, timer, state, report);
     if (scheme.multistep) remember(h, before, ws, state);
     timer.lap(report.times.advance);
 

@@ -11,18 +11,31 @@ namespace {
 // Leaves searched by one task.
 constexpr std::size_t group_size = 16;
 
-// Pairs within one leaf, or between two.
+// Pairs within one leaf, or between two. Of leaves that lie side by side, most of what is in one does not
+// reach the other's box at all, and is passed over before all is tried against all.
 struct LeafPairs {
     const Surface& surface;
     const SurfaceTree& tree;
     PairList& vertex_triangle;
     PairList& edge_edge;
+    std::vector<std::uint32_t> first, second;  // scratch: features of two leaves that reach the other's box
+
+    static void reaching(std::span<const std::uint32_t> features, std::span<const Box> boxes,
+                         const Box& other, std::vector<std::uint32_t>& out) {
+        out.clear();
+        for (const std::uint32_t k : features) {
+            if (boxes[k].overlaps(other)) out.push_back(k);
+        }
+    }
 
     bool differ(std::uint32_t p, std::uint32_t q) const { return surface.joint[p] != surface.joint[q]; }
     void try_vertices(std::uint32_t vertices_of, std::uint32_t triangles_of) {
-        for (const std::uint32_t p : tree.vertices.of(vertices_of)) {
+        reaching(tree.vertices.of(vertices_of), tree.vertex_box, tree.box_of(triangles_of), first);
+        if (first.empty()) return;
+        reaching(tree.triangles.of(triangles_of), tree.triangle_box, tree.box_of(vertices_of), second);
+        for (const std::uint32_t p : first) {
             const Box& box = tree.vertex_box[p];
-            for (const std::uint32_t t : tree.triangles.of(triangles_of)) {
+            for (const std::uint32_t t : second) {
                 if (!box.overlaps(tree.triangle_box[t])) continue;
                 const auto& [a, b, c] = surface.triangles[t];
                 if (differ(p, a) && differ(p, b) && differ(p, c)) vertex_triangle.push_back({p, t});
@@ -30,10 +43,13 @@ struct LeafPairs {
         }
     }
     void try_edges(std::uint32_t one, std::uint32_t other) {
-        for (const std::uint32_t e : tree.edges.of(one)) {
+        reaching(tree.edges.of(one), tree.edge_box, tree.box_of(other), first);
+        if (first.empty()) return;
+        reaching(tree.edges.of(other), tree.edge_box, tree.box_of(one), second);
+        for (const std::uint32_t e : first) {
             const Box& box = tree.edge_box[e];
             const auto& [a, b] = surface.edges[e];
-            for (const std::uint32_t g : tree.edges.of(other)) {
+            for (const std::uint32_t g : second) {
                 if ((one == other && g <= e) || !box.overlaps(tree.edge_box[g])) continue;
                 const auto& [c, d] = surface.edges[g];
                 if (differ(a, c) && differ(a, d) && differ(b, c) && differ(b, d))
@@ -78,7 +94,7 @@ void find_pairs(const Surface& surface, const SurfaceTree& tree, FeaturePairs& o
         found.vertex_triangle.clear();
         found.edge_edge.clear();
         found.blocks.clear();
-        LeafPairs pairs{surface, tree, found.vertex_triangle, found.edge_edge};
+        LeafPairs pairs{surface, tree, found.vertex_triangle, found.edge_edge, {}, {}};
         const auto counts = [&] {
             return std::array{static_cast<std::uint32_t>(found.vertex_triangle.size()),
                               static_cast<std::uint32_t>(found.edge_edge.size())};

@@ -36,6 +36,8 @@ public:
     Lists corners;                                        ///< of each leaf: all corners of those, each once
     std::vector<Box> vertex_box, edge_box, triangle_box;  ///< (particles), (edges), (triangles)
 
+    const Box& box_of(std::uint32_t leaf) const { return nodes_[node_of_[leaf]].box; }
+
     /// Calls f(other) for each leaf whose box overlaps that of `leaf` and whose number is not smaller.
     template <typename F>
     void each_partner(std::uint32_t leaf, const F& f) const {

@@ -65,12 +65,9 @@ double round_down(double step) {
     return std::floor(step / unit) * unit;
 }
 
-// The longest stretch spring at rest [m].
-double widest_spacing(const ClothModel& model) {
-    double widest = 0;
-    for (std::uint32_t s = 0; s < model.springs.stretch_count; ++s)
-        widest = std::max(widest, model.springs.rest[s]);
-    return widest;
+std::string rounding_words(const Solid& solid) {
+    const double radius = law_of(solid.shape).rounding(solid);
+    return radius > 0 ? fmt::format("a rounding of {:.2g} mm", 1e3 * radius) : std::string("sharp edges");
 }
 
 // At which distance layers touch, and what passes through what at the start.
@@ -103,17 +100,16 @@ std::vector<std::string> contact_notes(const Scene& scene, const Simulation& sim
                         "[{:.3f}, {:.3f}, {:.3f}]",
                         *passages.solids, 1e3 * passages.deepest, at.x(), at.y(), at.z()));
     }
+    const double spacing = widest_spacing(model);
     for (std::size_t s = 0; s < model.solids.size(); ++s) {
         const Solid& solid = model.solids[s];
-        const double thickness = 2 * law_of(solid.shape).half_extents(solid).minCoeff(),
-                     spacing = widest_spacing(model);
-        if (!law_of(solid.shape).surface || solid.contact == ContactMethod::surface || thickness >= spacing)
-            continue;
+        if (!needs_surfaces(solid, spacing) || scene.solids[s].contact == SolidContact::surface) continue;
         notes.push_back(fmt::format(
-            "{} is {:.2g} mm thick and particles are up to {:.2g} mm apart: they may miss it; contact = "
-            "\"surface\" holds edges and faces off, too",
+            "{} has {} and particles are up to {:.2g} mm apart: {}",
             solid.name.empty() ? fmt::format("solid {}", s) : fmt::format("solid \"{}\"", solid.name),
-            1e3 * thickness, 1e3 * spacing));
+            rounding_words(solid), 1e3 * spacing,
+            solid.by_surfaces() ? "it holds off edges and faces of the cloth, too (contact)"
+                                : "they may miss it; contact = \"surface\" holds edges and faces off, too"));
     }
     return notes;
 }

@@ -169,7 +169,10 @@ TEST_CASE("self-collision keeps two sheets apart, and without it they pass throu
         Pin all;
         all.target = PinTarget::box;
         scene.cloths[1].pins.push_back(all);
-        if (collide) scene.self_collision = SelfCollision{};
+        if (collide) {
+            scene.self_collision = SelfCollision{};
+            scene.self_collision->method = ContactMethod::particles;
+        }
         Simulation simulation = start_simulation(scene);
         double distance = 1;
         for (int k = 0; k < 100; ++k) {
@@ -192,6 +195,7 @@ TEST_CASE("colliding pairs are those of a search over all pairs") {
     scene.cloths.push_back(sheet(13, 0));
     scene.cloths[0].jitter = 0.3;
     scene.self_collision = SelfCollision{};
+    scene.self_collision->method = ContactMethod::particles;
     scene.self_collision->thickness = 0.15;
     Placement placement;
     const ClothModel model = build_model(scene, placement);

@@ -138,7 +138,7 @@ TEST_CASE("the complete scene's values arrive where they belong", "[scene]") {
     CHECK(scene.solids[0].size == Vec3(0.6, 0.05, 0.7));
     CHECK(scene.solids[0].round == 0.01);
     CHECK(scene.solids[0].offset == 0.006);
-    CHECK(scene.solids[0].contact == ContactMethod::surface);
+    CHECK(scene.solids[0].contact == SolidContact::surface);
     CHECK(scene.solids[0].color == "#123abc");
     CHECK(scene.solids[0].pivot == Vec3(0, 0.5, 0));
     CHECK(scene.solids[1].pivot == Vec3(3, 0.625, 0));
