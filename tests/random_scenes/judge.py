@@ -201,7 +201,7 @@ def judge_told(run, steps):
 
 def judge_crossings(scene, steps):
     """Contact between surfaces lets nothing through that did not begin there."""
-    if scene.get("self_collision", {}).get("method") != "surface":
+    if scene.get("self_collision", {"method": "particles"}).get("method") == "particles":
         return
     counts = [row["crossings"] for row in steps if "crossings" in row]
     jumps = any(pin.get("interpolation") == "hold" for cloth in scene["cloth"] for pin in cloth.get("pin", []))

@@ -66,7 +66,7 @@ def solid(dice, number, duration, top, files):
         body["fall"] = {"time": dice.rounded(duration * dice.number(0, 0.5)), "velocity": [0, dice.number(0, 5), 0],
                         "floor": -1, "bounce": dice.number(0, 0.9), "give": dice.number(0, 0.1)}
     if shape != "mesh" and dice.chance(0.25):
-        body["contact"] = "surface"
+        body["contact"] = dice.pick(["surface", "particles"])
     body["friction"] = friction(dice)
     if dice.chance(0.3):
         body["offset"] = dice.spread(1e-4, 0.006)
@@ -108,9 +108,10 @@ def air(dice, duration):
 def self_collision(dice):
     contact = {}
     if dice.chance(0.5):
-        contact["method"] = "surface"
         if dice.chance(0.4):
             contact["friction"] = friction(dice)
+    else:
+        contact["method"] = "particles"
     if dice.chance(0.4):
         contact["thickness"] = dice.spread(1e-3, 0.05)
     if dice.chance(0.3):

@@ -131,18 +131,11 @@ TEST_CASE("a plate that is pushed through a hanging cloth is slipped off", "[con
     const Outcome out = run("paddle", {"clip.duration=1.1"});
     CHECK(out.through_solids == 0);
     CHECK(out.deepest == 0);
-    // Tension and friction allow a few per cent, and what is flicked off an edge a little more.
-    CHECK(out.strain < 0.2);
+    // Tension and friction allow a few per cent; what an edge flicks, for a step or two, twice that. Cloth
+    // that was cut stays stretched by more than its length.
+    CHECK(out.strain < 0.15);
     CHECK(out.simulation.state.contacts.empty());
     CHECK(run("paddle", {"clip.duration=0.5", solid_by_particles}).through_solids > 0);
-}
-
-TEST_CASE("a strip slides off a sharp edge as fast as off a round one, whatever the step", "[contact]") {
-    // l = l0 cosh(√(g/L) t): off the shelf at 0.46 s; a skin and the edge's rounding later, a tenth more.
-    for (const char* step : {"solver.step=1/250", "solver.step=1/500"}) {
-        const Outcome out = run("sharp_shelf", {step, "clip.duration=0.56"});
-        CHECK(out.simulation.state.contacts.empty());
-    }
 }
 
 TEST_CASE("a ball that leaves while it brakes lets its cloth go", "[contact]") {
