@@ -139,16 +139,30 @@ void measure_bends(const ClothModel& model, std::span<const Vec3> x, const Force
     });
 }
 
-// ½ c |Δy|² of each explicit stencil. What arcs add, whose slope is cut to what the step bears, comes from
-// nowhere and is not given back.
+// Of quadratic energy, a stencil's or an arc's whose slope is cut, it is ½ c |Δy|².
 double gain_of_explicit_bends(const ClothModel& model, const StepEnds& step, const ForceMemory& memory,
                               MeasureWorkspace& ws) {
     const BendingMemory& own = memory.bending;
     const CurvatureStencils& stencils = model.curvature;
-    return ws.sum(stencils.size(), [&](std::size_t s) {
+    const double gain = ws.sum(stencils.size(), [&](std::size_t s) {
         if (own.is_implicit && own.split.is_implicit[s] != 0) return 0.0;
         const Vec3 bent = bend_of(stencils, s, step.x_next) - bend_of(stencils, s, step.x);
         return 0.5 * stencils.stiffness[s] * bent.squaredNorm();
+    });
+    const BendSprings& bends = model.bends;
+    if (own.is_implicit || own.limit.slope.size() != bends.size()) return gain;
+    return gain + ws.sum(bends.size(), [&](std::size_t s) {
+        const double rest = bends.rest[s], stiffness = bends.stiffness[s], slope = own.limit.slope[s],
+                     crossing = own.limit.crossing[s];
+        const Vec3 d = step.x[bends.j[s]] - step.x[bends.i[s]],
+                   d_next = step.x_next[bends.j[s]] - step.x_next[bends.i[s]];
+        const double length = d.norm();
+        double more = bend_energy(d_next.norm(), rest, stiffness, slope, crossing);
+        if (length < rest && length > 0) {
+            more -= bend_energy(length, rest, stiffness, slope, crossing) +
+                    bend_force(length, rest, stiffness, slope) / length * d.dot(d_next - d);
+        }
+        return more;
     });
 }
 
