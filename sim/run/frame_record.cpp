@@ -44,6 +44,8 @@ void members(Archive& archive, Record& r) {
         archive(c.force);
         archive(c.slip);
     });
+    archive(r.energy);
+    archive(r.energy_limit);
     archive(r.component);
     archive(r.free);
     archive(r.springs);

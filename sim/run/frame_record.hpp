@@ -18,6 +18,7 @@ namespace unravel::sim {
 struct FrameRecord {
     int frame = 0;  ///< due at exactly frame/fps
     ClothState state;
+    double energy = 0, energy_limit = 0;  ///< J, that there is, and to which the guard holds what comes
     std::vector<std::int32_t> component;  ///< (particles) of the last step; −1: fully constrained
     std::vector<std::uint8_t> free;       ///< (particles) free directions, 0–3
     std::vector<SpringState> springs;     ///< (stretch and shear springs) of the last step

@@ -22,6 +22,10 @@ constexpr std::size_t most_named = 16;
 constexpr double calming_band = 0.02;
 // Energy that a step may add, as a share of what the run has to spend.
 constexpr double rounding_share = 1e-10;
+// A gain of so many times that, a thousandth of what the run has to spend, is worth dividing the step for.
+constexpr double notable_gain = 1e7;
+// Halvings of a step that gains as much however it is linearised.
+constexpr int step_halvings = 3;
 
 std::string advice_for(Criterion criterion, const StepOptions& options, double h) {
     const bool explicit_springs = options.integrator != Integrator::implicit;
@@ -198,11 +202,12 @@ Guard make_guard(const ClothModel& model, const ClothState& start, double h) {
     prepare_terms(model, h, forces);
     measure(model, forces, start, scratch, report);
     guard.strain += std::max(report.max_strain, 0.0);
-    double weight = 0, size = 0;
+    double weight = 0, size = 0, skin = 0;
     for (const double m : model.mass) weight += m * model.gravity.norm();
     for (const ClothPatch& patch : model.cloths) size = std::max({size, patch.size[0], patch.size[1]});
     const double height = height_energy(model, start.x), springs = report.potential - height;
-    const double spent = report.kinetic + springs + weight * size;
+    for (const Solid& solid : model.solids) skin = std::max(skin, solid.offset);
+    const double spent = report.kinetic + springs + weight * (size + skin);
     const double of_rounding = energy_of_rounding(model, start, h);
     guard.energy = height + 2.0 * (spent + of_rounding);
     guard.total = report.kinetic + report.potential;
@@ -243,24 +248,91 @@ StepReport take_again(const ClothModel& model, const StepOptions& options, doubl
     return report;
 }
 
+struct HeldStep {
+    StepReport report;
+    double input = 0;  // J, put in, of what there is more of than before
+    double gain = 0;   // J, beyond what may be
+};
+
+// One step, taken again where it has to be, from a state of `total` energy [J].
+HeldStep whole_step(const ClothModel& model, const StepOptions& options, double h, double total,
+                    double rounding, ClothState& state, StepWorkspace& ws) {
+    HeldStep held;
+    StepReport& report = held.report;
+    report = step(model, options, h, state, ws);
+    const auto gain_beyond = [&](double energy) { return total_energy(report) - energy - rounding; };
+    if (!options.measure || !(gain_beyond(total) > 0) || !std::isfinite(total_energy(report))) return held;
+    held.input = energy_input(model, state, report, ws);
+    double allowed = total + held.input;
+    if (ws.linear.coupled && gain_beyond(allowed) > 0) {
+        allowed += energy_swing(model, state, ws);
+        if (gain_beyond(allowed) > 0) report = take_again(model, options, h, allowed, report, state, ws);
+        held.gain = std::max(0.0, gain_beyond(allowed));
+    }
+    // What is not counted has put in what is there.
+    held.input = std::min(held.input, std::max(0.0, total_energy(report) - total));
+    return held;
+}
+
+// Adds another attempt's work, or that of the part before, to a report.
+void add_work(const StepReport& other, StepReport& report) {
+    report.cg_iterations += other.cg_iterations;
+    report.cg_iterations_max = std::max(report.cg_iterations_max, other.cg_iterations_max);
+    report.rvm += other.rvm;
+    if (report.rvm_whole) report.rvm_whole = *report.rvm_whole + other.rvm_whole.value_or(0);
+    report.times += other.times;
+    report.rejected += other.rejected;
+}
+
+// The same, in halves where it gains notably, and those in halves, as long as that makes it less. Not of
+// multistep schemes, which look back on steps of one size.
+HeldStep held_step(const ClothModel& model, const StepOptions& options, double h, double total,
+                   double rounding, int halvings, ClothState& state, StepWorkspace& ws) {
+    HeldStep whole = whole_step(model, options, h, total, rounding, state, ws);
+    const bool multistep = scheme_of(ws.plan.step.integrator).multistep;
+    if (!(whole.gain > notable_gain * rounding) || halvings == 0 || multistep) return whole;
+    const ClothState start = ws.before;
+    ClothState end = state;
+    const auto keep_whole = [&] {
+        std::swap(state, end);
+        ws.before = start;
+        plan_step(model, options, h, ws);
+        ++whole.report.rejected;
+        return whole;
+    };
+    state = start;
+    HeldStep first, second;
+    try {
+        first = held_step(model, options, 0.5 * h, total, rounding, halvings - 1, state, ws);
+        second =
+            held_step(model, options, 0.5 * h, total_energy(first.report), rounding, halvings - 1, state, ws);
+    } catch (const SimulationError&) {
+        return keep_whole();
+    }
+    if (!(first.gain + second.gain < whole.gain)) return keep_whole();
+    HeldStep held = second;
+    held.input += first.input;
+    held.gain += first.gain;
+    add_work(first.report, held.report);
+    add_work(whole.report, held.report);
+    ++held.report.rejected;
+    held.report.converged = first.report.converged && second.report.converged;
+    held.report.step = state.step = whole.report.step;
+    held.report.t = state.t = whole.report.t;
+    held.report.h = state.h_previous = h;
+    parallel_each(model.size(), [&](std::size_t p) { state.dv[p] = state.v[p] - start.v[p]; });
+    ws.before = start;
+    plan_step(model, options, h, ws);  // what is told of a step is not its last part's
+    return held;
+}
+
 }  // namespace
 
 StepReport guarded_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                         StepWorkspace& ws, Guard& guard) {
-    StepReport report = step(model, options, h, state, ws);
+    const HeldStep held = held_step(model, options, h, guard.total, guard.rounding, step_halvings, state, ws);
+    const StepReport& report = held.report;
     if (!options.measure) return report;
-    const auto grows_beyond = [&](double energy) { return total_energy(report) > energy + guard.rounding; };
-    double input = 0;
-    if (grows_beyond(guard.total) && std::isfinite(total_energy(report))) {
-        input = energy_input(model, state, report, ws);
-        double allowed = guard.total + input;
-        if (ws.linear.coupled && grows_beyond(allowed)) {
-            allowed += energy_swing(model, state, ws);
-            if (grows_beyond(allowed)) report = take_again(model, options, h, allowed, report, state, ws);
-        }
-        // What is not counted has put in what is there.
-        input = std::min(input, std::max(0.0, total_energy(report) - guard.total));
-    }
     Judgement judgement{model, options, state, h, {}};
     judgement.failure.step = report.step;
     judgement.failure.t = ws.before.t;
@@ -268,14 +340,14 @@ StepReport guarded_step(const ClothModel& model, const StepOptions& options, dou
     try {
         judgement.judge_finite(report);
         judgement.judge_strain(report, guard.strain);
-        judgement.judge_energy(report, guard.energy + input);
+        judgement.judge_energy(report, guard.energy + held.input);
         judgement.judge_solution(report, trace_of(model, ws), guard.residual);
     } catch (const SimulationError&) {
         std::swap(state, ws.before);
         throw;
     }
     guard.total = total_energy(report);
-    guard.energy += input;
+    guard.energy += held.input;
     return report;
 }
 

@@ -19,10 +19,11 @@ struct Guard {
 };
 
 /// The guard of a run that starts at `start`. Strain may reach 10 beyond what the scene placed; energy of
-/// motion and height twice what the run has to spend: springs, motion, and a fall through the cloth's own
-/// size. Energy in springs is not counted: a stiff spring that goes taut within a long step holds much of it
-/// for that one step. A cloth that rests where nothing pulls has nothing to spend: what its positions' last
-/// bits may hold is added. `h` [s] is the step that the springs' energy is measured for.
+/// motion and height twice what the run has to spend: springs, motion, a fall through the cloth's own
+/// size, and being lifted onto a solid's skin. Energy in springs is not counted: a stiff spring that goes
+/// taut within a long step holds much of it for that one step. A cloth that rests where nothing pulls has
+/// nothing to spend: what its positions' last bits may hold is added. `h` [s] is the step that the springs'
+/// energy is measured for.
 Guard make_guard(const ClothModel& model, const ClothState& start, double h);
 
 /// step(), taken back where its outcome breaks the guard. On SimulationError the state is what it was before.
@@ -31,8 +32,9 @@ Guard make_guard(const ClothModel& model, const ClothState& start, double h);
 /// at its end than the linear model has them, and energy has come from nowhere. A step after which there is
 /// more of it than before, than what pins, moving solids, wind and temporary springs put in and than what
 /// swings where springs are explicit (sim/step/energy_input.hpp), is therefore taken again, linearised until
-/// its end is met (Eq. 4): the springs' energy is convex in x, so that backward Euler then only loses. The
-/// report counts both attempts' work, and the first as rejected.
+/// its end is met (Eq. 4): the springs' energy is convex in x, so that backward Euler then only loses. Where
+/// it gains notably even so, as cloth does that is thrown about a solid, it is divided, down to eighths, as
+/// far as that makes it less. The report counts all attempts' work, and those undone as rejected.
 StepReport guarded_step(const ClothModel& model, const StepOptions& options, double h, ClothState& state,
                         StepWorkspace& ws, Guard& guard);
 

@@ -61,11 +61,9 @@ void restore(Simulation& simulation, const FrameRecord& record) {
     simulation.settling = 0;
     simulation.state = record.state;
     simulation.frame = record.frame;
-    if (record.reports.empty()) return;
-    // What has been put in so far is in the state.
-    const double h = 1.0 / (simulation.fps.per_second() * simulation.steps_per_frame);
-    simulation.guard.energy = make_guard(simulation.model, simulation.state, h).energy;
-    simulation.guard.total = record.reports.back().kinetic + record.reports.back().potential;
+    // Settled or pushed, it has been through more than its start tells.
+    simulation.guard.total = record.energy;
+    simulation.guard.energy = record.energy_limit;
 }
 
 FrameRecord present_record(const Simulation& simulation) {
@@ -73,6 +71,8 @@ FrameRecord present_record(const Simulation& simulation) {
     FrameRecord record;
     record.frame = simulation.frame;
     record.state = simulation.state;
+    record.energy = simulation.guard.total;
+    record.energy_limit = simulation.guard.energy;
     record.free.assign(n, 3);
     const StepTrace trace = trace_of(simulation.model, simulation.ws);
     for (const Constraint& c : trace.constraints.all()) record.free[c.particle] = c.free;

@@ -7,10 +7,12 @@ namespace unravel::sim {
 
 namespace {
 
-// Pairs are searched out to between so many thicknesses, so that the list lasts until particles have moved by
-// half the excess against each other: far where that finds few, near where it finds many. How far decides
-// what a step costs, never which pairs are nearer than the thickness.
+// Pairs are searched out to between so many thicknesses, so that the list lasts for a while: far where that
+// finds few, near where it finds many. How far decides what a step costs, never which pairs are nearer than
+// the thickness.
 constexpr double least_search = 1.5, search_growth = 1.5;
+// Groups of particles for the root of their number: their pairs then cost as much as the particles do.
+constexpr double groups_per_root = 2;
 // Pairs for each particle that are many, and few.
 constexpr double many_pairs = 1, few_pairs = 0.25;
 
@@ -88,15 +90,76 @@ void search(const ClothModel& model, std::span<const Vec3> x, double radius, Sel
     ws.x_searched.assign(x.begin(), x.end());
 }
 
-// Whether any two particles may have come nearer to each other than by twice the bound: what they have moved
-// in common brings none together.
-bool moved_too_far(std::span<const Vec3> x, std::span<const Vec3> before, double bound) {
+// Sorts the particles by boxes into groups, and notes the room between them: `radius` of those that were
+// looked through for pairs, the gap between others.
+void make_groups(std::span<const Vec3> x, double radius, double thickness, ParticleGroups& groups) {
+    const double wanted = groups_per_root * std::sqrt(static_cast<double>(x.size()));
+    // As large as of a flat sheet would make so many; afterwards as the last ones were too many or too few.
+    if (groups.edge == 0) {
+        groups.edge = 1.5 * thickness * std::sqrt(static_cast<double>(x.size()) / wanted);
+    } else if (static_cast<double>(groups.size()) > 1.5 * wanted) {
+        groups.edge *= 1.25;
+    } else if (static_cast<double>(groups.size()) < wanted / 1.5) {
+        groups.edge /= 1.25;
+    }
+    groups.key.resize(x.size());
+    parallel_each(x.size(), [&](std::size_t p) {
+        const Voxel v = voxel_at(x[p], groups.edge);
+        constexpr std::uint64_t bits = (std::uint64_t{1} << 21) - 1;
+        const auto part = [&](std::int64_t c) { return static_cast<std::uint64_t>(c) & bits; };
+        groups.key[p] = {part(v.x) << 42 | part(v.y) << 21 | part(v.z), static_cast<std::uint32_t>(p)};
+    });
+    std::sort(groups.key.begin(), groups.key.end());
+    groups.start.clear();
+    groups.low.clear();
+    groups.high.clear();
+    for (std::uint32_t k = 0; k < groups.key.size(); ++k) {
+        const Vec3& at = x[groups.key[k].second];
+        if (k == 0 || groups.key[k].first != groups.key[k - 1].first) {
+            groups.start.push_back(k);
+            groups.low.push_back(at);
+            groups.high.push_back(at);
+        }
+        groups.low.back() = groups.low.back().cwiseMin(at);
+        groups.high.back() = groups.high.back().cwiseMax(at);
+    }
+    groups.start.push_back(static_cast<std::uint32_t>(groups.key.size()));
+    groups.room.clear();
+    for (std::size_t a = 0; a < groups.size(); ++a) {
+        for (std::size_t b = 0; b <= a; ++b) {
+            const Vec3 gap = (groups.low[a] - groups.high[b]).cwiseMax(groups.low[b] - groups.high[a]);
+            groups.room.push_back(std::max(radius, gap.cwiseMax(0.0).norm()) - thickness);
+        }
+    }
+}
+
+// Whether two particles that are no known pair may have come within the thickness: what groups have moved in
+// common brings none together.
+bool may_be_missing(std::span<const Vec3> x, std::span<const Vec3> before, ParticleGroups& groups) {
     if (before.size() != x.size()) return true;
-    Vec3 common = Vec3::Zero();
-    for (std::size_t p = 0; p < x.size(); ++p) common += x[p] - before[p];
-    common /= static_cast<double>(x.size());
-    for (std::size_t p = 0; p < x.size(); ++p) {
-        if ((x[p] - before[p] - common).squaredNorm() > bound * bound) return true;
+    groups.way.assign(groups.size(), Vec3::Zero());
+    groups.spread.assign(groups.size(), 0.0);
+    parallel_each(groups.size(), [&](std::size_t g) {
+        const auto each = [&](const auto& f) {
+            for (std::uint32_t k = groups.start[g]; k < groups.start[g + 1]; ++k) {
+                const std::uint32_t p = groups.key[k].second;
+                f(Vec3(x[p] - before[p]));
+            }
+        };
+        Vec3& way = groups.way[g];
+        each([&](const Vec3& d) { way += d; });
+        way /= groups.start[g + 1] - groups.start[g];
+        double farthest = 0;
+        each([&](const Vec3& d) { farthest = std::max(farthest, (d - way).squaredNorm()); });
+        groups.spread[g] = std::sqrt(farthest);
+    });
+    const double* room = groups.room.data();
+    for (std::size_t a = 0; a < groups.size(); ++a) {
+        for (std::size_t b = 0; b <= a; ++b, ++room) {
+            const double nearer =
+                (groups.way[a] - groups.way[b]).norm() + groups.spread[a] + groups.spread[b];
+            if (nearer > *room) return true;
+        }
     }
     return false;
 }
@@ -104,7 +167,7 @@ bool moved_too_far(std::span<const Vec3> x, std::span<const Vec3> before, double
 // Looks for pairs where those known may not be all, as far as was worth while the last time.
 void keep_pairs(const ClothModel& model, std::span<const Vec3> x, SelfCollisionWorkspace& ws) {
     const double thickness = model.self_collision->thickness;
-    if (!moved_too_far(x, ws.x_searched, 0.5 * (ws.searched - 1) * thickness)) return;
+    if (!may_be_missing(x, ws.x_searched, ws.groups)) return;
     const double particles = static_cast<double>(x.size());
     if (static_cast<double>(ws.pairs.size()) > many_pairs * particles) {
         // Most are of cloth that lies flat, or will go on to lie as it lies: never so far again.
@@ -113,6 +176,7 @@ void keep_pairs(const ClothModel& model, std::span<const Vec3> x, SelfCollisionW
         ws.searched = std::min(ws.farthest, ws.searched * search_growth);
     }
     search(model, x, ws.searched * thickness, ws);
+    make_groups(x, ws.searched * thickness, thickness, ws.groups);
 }
 
 }  // namespace

@@ -124,9 +124,9 @@ MemoryRecord account_memory(const Simulation& simulation, double peak) {
     add("stitches", bytes(f.stitches.springs) + bytes(f.stitches.forces) +
                         static_cast<double>(f.stitches.adjacency.bytes()));
     const SelfCollisionWorkspace& c = f.self_collision;
-    add("self-collision",
-        bytes(c.springs) + bytes(c.forces) + static_cast<double>(c.adjacency.bytes()) +
-            bytes(c.pairs, c.x_searched, c.voxel_start, c.voxel_particles, c.voxel_of));
+    add("self-collision", bytes(c.springs) + bytes(c.forces) + static_cast<double>(c.adjacency.bytes()) +
+                              bytes(c.pairs, c.x_searched, c.voxel_start, c.voxel_particles, c.voxel_of,
+                                    c.groups.key, c.groups.room));
     add("components", bytes(l.parent, l.components.label, l.components.order, l.components.start));
     const double by_rows = row_share(l.system, l.components);
     const System& A = l.system;
