@@ -175,7 +175,8 @@ void choose_solid_contacts(ClothModel& model) {
     const double spacing = widest_spacing(model);
     for (Solid& solid : model.solids) {
         if (solid.contact != SolidContact::automatic) continue;
-        solid.contact = needs_surfaces(solid, spacing) ? SolidContact::surface : SolidContact::particles;
+        const bool needs = model.may_touch && needs_surfaces(solid, spacing);
+        solid.contact = needs ? SolidContact::surface : SolidContact::particles;
     }
 }
 

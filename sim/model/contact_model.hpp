@@ -33,8 +33,8 @@ double widest_spacing(const ClothModel& model);
 /// Never of planes, nor of meshes, of which edges and faces are not held off.
 bool needs_surfaces(const Solid& solid, double spacing);
 
-/// Decides what the scene leaves open of a model that has its springs and solids: solids that particles may
-/// miss hold off edges and faces, too.
+/// Decides what the scene leaves open of a model that has its springs and solids: solids that the cloth can
+/// come to and its particles may miss hold off edges and faces, too.
 void choose_solid_contacts(ClothModel& model);
 
 /// Builds it for a model that has its cloths, springs and masses; null where crossings can't be: a single
