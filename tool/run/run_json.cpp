@@ -116,7 +116,8 @@ Json run_json(const Scene& scene, const Simulation& simulation, const RunSource&
     }
     json["plan"] = plan_json(simulation.ws.plan.step);
     json["warnings"] = scene.notes;
-    for (std::string& line : findings(scene, simulation.model, reports)) json["warnings"].push_back(std::move(line));
+    for (std::string& line : findings(scene, simulation.model, reports))
+        json["warnings"].push_back(std::move(line));
     json["totals"] = totals(reports, simulation.model.size());
     for (const std::uint64_t hash : source.hashes())
         json["state_hashes"].push_back(fmt::format("{:016x}", hash));
