@@ -24,8 +24,7 @@ constexpr std::uint8_t slip_steps = 3;
 constexpr double pinch_cosine = -0.5;
 // A gap below this is rounding [m]: what rests then rests to the last bit, and asks for nothing.
 constexpr double no_gap = 1e-12;
-// A contact that let go with a pull of this many times the particle's weight is not caught again by its
-// weight.
+// What let go with a pull of this many times its weight is not caught again by its weight.
 constexpr double strong_pull = 10;
 // Contacts this parallel are one direction.
 constexpr double parallel_cosine = 0.999;

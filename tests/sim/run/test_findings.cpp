@@ -145,7 +145,7 @@ TEST_CASE("cloth that moves at the end is told unless something drives it", "[fi
 
 TEST_CASE("effects that had nothing to do are told by name", "[findings]") {
     const std::string still = "gravity = [0, 0, 0]\n" + std::string(short_clip) +
-                              "[cloth]\nparticles = [5, 5]\ncenter = [0, 1, 0]\n";
+                              "[cloth]\nparticles = [21, 21]\ncenter = [0, 1, 0]\n";
     const std::string ball = "[[solid]]\nshape = \"sphere\"\nradius = 0.1\n";
     CHECK_THAT(told(parsed(still + ball)).at(0), Contains("the solid was never touched"));
     CHECK_THAT(told(parsed(still + ball + ball + "center = [0, -1, 0]\n")).at(0),

@@ -85,6 +85,7 @@ TEST_CASE("contact within the explicit sweep is that of the general path", "[swe
     Solid moving = scene.solids.front();
     moving.name = "moving";
     moving.shape = Shape::box;
+    moving.contact = SolidContact::particles;  // edges and faces are for the general path alone
     moving.size = {0.2, 0.2, 0.2};
     moving.center = moving.pivot = {0.4, 0.7, 0.1};
     moving.motion = {{0, {0, 0, 0}, {0, 0, 0}}, {0.1, {0, 0.1, 0}, {20, 0, 40}}};

@@ -42,9 +42,15 @@ TEST_CASE("the implicit scheme's pattern has a block per particle and two per co
     };
     for (std::size_t s = 0; s < model.springs.size(); ++s) couple(model.springs.i[s], model.springs.j[s]);
     for (std::size_t s = 0; s < model.bends.size(); ++s) couple(model.bends.i[s], model.bends.j[s]);
+    const CurvatureStencils& stencils = model.curvature;
+    for (std::size_t s = 0; s < stencils.size(); ++s)
+        for (std::uint32_t a = 0; a < stencils.count(s); ++a)
+            for (std::uint32_t b = a + 1; b < stencils.count(s); ++b)
+                couple(stencils.p[s][a], stencils.p[s][b]);
     CHECK(set_of(pattern) == expected);
-    // 9 on the diagonal, and of 12 stretch, 8 shear and 8 bend springs two each: none doubles another.
-    CHECK(pattern.entries.size() == 9 + 2 * (12 + 8 + 8));
+    // 9 on the diagonal, and of 12 stretch and 8 shear springs and of 6 ends of lines of three two each:
+    // bending couples no others, and none doubles another.
+    CHECK(pattern.entries.size() == 9 + 2 * (12 + 8 + 6));
 }
 
 TEST_CASE("the step's pattern is that of the system which was solved", "[inspect]") {
