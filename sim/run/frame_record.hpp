@@ -26,7 +26,7 @@ struct FrameRecord {
 };
 
 /// What every record begins with; the last byte is the format's version.
-inline constexpr std::string_view record_magic = "UNRAVEL\x06";
+inline constexpr std::string_view record_magic = "UNRAVEL\x07";
 
 /// Hash of positions and velocities, by which runs are compared bit for bit (64-bit FNV-1a over their bytes).
 std::uint64_t state_hash(const ClothState& state);
