@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sim/constraints/near_solids.hpp"
+#include "sim/constraints/touch_groups.hpp"
 
 namespace unravel::sim {
 
@@ -16,18 +17,12 @@ namespace {
 constexpr double catch_share = 0.01;
 // Depth is corrected at most this fast [m/s].
 constexpr double correction_speed = 0.5;
-// A constraint that pulls by more than this share of the particle's weight lets go.
-constexpr double pull_share = 1e-3;
-// After a slip friction slides for this many steps before it may hold again; without it a slip welds at once.
-constexpr std::uint8_t slip_steps = 3;
 // Two contacts pinch where their normals' cosine is below this.
 constexpr double pinch_cosine = -0.5;
 // A gap below this is rounding [m]: what rests then rests to the last bit, and asks for nothing.
 constexpr double no_gap = 1e-12;
 // What let go with a pull of this many times its weight is not caught again by its weight.
 constexpr double strong_pull = 10;
-// Contacts this parallel are one direction.
-constexpr double parallel_cosine = 0.999;
 
 // How far from a mesh nothing can touch it within the step: the particle, the body and the body's own skin
 // don't meet.
@@ -64,6 +59,7 @@ bool touches_solid(const Solid& solid, const DeformedSolid* deformed, const Pose
     const bool catches = ahead < -catch_share * solid.offset;
     if (known && !let_go) {
         touch.contact = *known;
+        touch.is_new = false;
         // One that has opened but is about to be run over again is still a contact; one that would open
         // though it is pressed as it was is none: it goes round an edge, or is thrown off.
         const double pressed = touch.gap + view.step * (touch.normal.dot(view.v[p] - touch.velocity) - push);
@@ -72,42 +68,6 @@ bool touches_solid(const Solid& solid, const DeformedSolid* deformed, const Pose
     // No force has been felt yet; friction reckons with what it takes to stop the particle at the surface.
     touch.contact.force = view.mass[p] * std::max(-ahead, 0.0) / (view.step * view.step);
     return catches;
-}
-
-// Touches of one particle.
-using Group = std::span<Touch>;
-
-template <typename F>
-void for_each_group(std::span<Touch> touches, const F& f) {
-    for (std::size_t first = 0; first < touches.size();) {
-        std::size_t last = first + 1;
-        while (last < touches.size() && touches[last].contact.particle == touches[first].contact.particle)
-            ++last;
-        f(touches.subspan(first, last - first));
-        first = last;
-    }
-}
-
-Vec3 tangential(const Touch& touch, const Vec3& v) {
-    const Vec3 relative = v - touch.velocity;
-    return relative - touch.normal.dot(relative) * touch.normal;
-}
-
-// Static friction holds a sliding contact again when friction would stop it within half a step, or has turned
-// it round.
-void decide_friction(const Friction& friction, const StepView& view, Touch& touch) {
-    Contact& c = touch.contact;
-    if (c.held) return;
-    const Vec3 slip = tangential(touch, view.v[c.particle]);
-    const double stopping = friction.kinetic * c.force * view.h_force / view.mass[c.particle];
-    const bool may_hold = c.sliding == 0 && c.force > 0 && friction.static_ > 0;
-    if (may_hold && (stopping >= 2 * slip.norm() || slip.dot(c.slip) < 0)) {
-        c.held = true;
-        c.slip.setZero();
-    } else {
-        c.slip = slip;
-        if (c.sliding > 0) --c.sliding;
-    }
 }
 
 // Whether two solids pinch a particle: they leave it less room than it takes.
@@ -119,7 +79,7 @@ bool opposed(const Touch& a, const Touch& b) {
 void drop_loose(std::vector<Touch>& touches) {
     std::vector<Touch> kept;
     kept.reserve(touches.size());
-    for_each_group(touches, [&](Group group) {
+    for_each_group(std::span(touches), [&](Group group) {
         for (const Touch& touch : group) {
             const bool loose = std::ranges::any_of(group, [&](const Touch& other) {
                 const bool faces = touch.normal.dot(other.normal) < pinch_cosine && !opposed(touch, other);
@@ -140,37 +100,10 @@ Vec3 depth_correction(const Touch& touch, double h) {
     return std::min(std::max(-touch.gap, 0.0), correction_speed * h) * touch.normal;
 }
 
-bool same_direction(const Vec3& a, const Vec3& b) {
-    return a == b || a.dot(b) > parallel_cosine;
-}
-
-// Directions that a group takes away, as columns; parallel ones count once, and so do those of a pinch.
-Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> taken_directions(Group group) {
-    Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> N(3, 0);
-    for (const Touch& touch : group) {
-        if (N.cols() == 3) break;
-        bool known = false;
-        for (Eigen::Index k = 0; k < N.cols(); ++k)
-            known = known || same_direction(N.col(k), touch.normal) ||
-                    (touch.pinched && same_direction(N.col(k), -touch.normal));
-        if (known) continue;
-        N.conservativeResize(3, N.cols() + 1);
-        N.col(N.cols() - 1) = touch.normal;
-    }
-    return N;
-}
-
 // The vector of span(N) with given components along N's columns.
 template <typename Matrix>
 Vec3 with_components(const Matrix& N, const Eigen::VectorXd& c) {
     return N * (N.transpose() * N).eval().ldlt().solve(c);
-}
-
-void add_kinetic_friction(const Friction& friction, const StepView& view, const Contact& c, Vec3& impulse) {
-    const double slip = c.slip.norm();
-    if (slip == 0 || c.force <= 0) return;
-    const double most = view.mass[c.particle] * slip;  // friction stops, it never turns round
-    impulse -= std::min(most, friction.kinetic * c.force * view.h_force) / slip * c.slip;
 }
 
 // Velocity that a solid's own gives to v' so that x' follows the solid over the step; 1 for one-step schemes.
@@ -179,148 +112,119 @@ double carry(const StepView& view) {
 }
 
 // Nearly every touching particle touches once: one normal, no linear algebra.
-void constrain_single(const Friction& friction, const StepView& view, Touch& touch, Constraints& constraints,
-                      std::span<Vec3> base, std::span<Vec3> impulse) {
+void constrain_single(const StepView& view, const Touch& touch, std::span<const Vec3> base,
+                      Constraints& constraints) {
     const std::uint32_t p = touch.contact.particle;
     const Vec3& n = touch.normal;
-    decide_friction(friction, view, touch);
     Constraint c;
     c.particle = p;
     c.z = (view.x[p] - base[p]) / view.h + carry(view) * touch.velocity + closing(touch, view.h) - view.v[p];
-    base[p] += depth_correction(touch, view.h);
     if (!touch.contact.held) {
         c.free = 2;
         c.S = Mat3::Identity() - n * n.transpose();
         c.z = n.dot(c.z) * n;
-        add_kinetic_friction(friction, view, touch.contact, impulse[p]);
     }
     constraints.add(c);
 }
 
-// Along a direction of a pinch: the speed of the solids, and the way to the middle between them.
-void pinch_along(const StepView& view, Group group, const Vec3& n, const Vec3& from_base, double& speed,
-                 double& depth) {
-    double ride = 0, way = 0;
+bool is_pinched(std::span<const Touch> group) {
+    return std::ranges::any_of(group, [](const Touch& t) { return t.pinched; });
+}
+
+// A pinch between solids of which any is rough holds the particle, however hard it is pulled.
+bool is_gripped(std::span<const Solid> solids, std::span<const Touch> group) {
+    const auto rough = [&](const Touch& t) { return solids[t.contact.solid].friction.static_ > 0; };
+    return is_pinched(group) && std::ranges::any_of(group, rough);
+}
+
+bool all_taken(const Eigen::Matrix3d& N) {
+    return std::abs(N.determinant()) > 1e-6;
+}
+
+// Smooth solids hold what they pinch in the middle between them, and let it slide there. Along direction n of
+// a pinch: the mean of f(touch, n) over its sides.
+template <typename F>
+double mean_of_pinch(std::span<const Touch> group, const Vec3& n, const F& f) {
+    double sum = 0;
     int sides = 0;
     for (const Touch& touch : group) {
         if (!same_direction(n, touch.normal) && !same_direction(n, -touch.normal)) continue;
-        ride += n.dot(from_base + carry(view) * touch.velocity);
-        way -= touch.gap * n.dot(touch.normal);
+        sum += f(touch);
         ++sides;
     }
-    const double limit = correction_speed * view.h;
-    speed = ride / sides;
-    depth = std::clamp(way / sides, -limit, limit);
+    return sum / sides;
 }
 
-void constrain_group(std::span<const Solid> solids, const StepView& view, Group group,
-                     Constraints& constraints, std::span<Vec3> base, std::span<Vec3> impulse) {
+void constrain_group(std::span<const Solid> solids, const StepView& view, std::span<const Touch> group,
+                     std::span<const Vec3> base, Constraints& constraints) {
     const std::uint32_t p = group.front().contact.particle;
-    bool held = false, rough = false;
-    for (Touch& touch : group) {
-        decide_friction(solids[touch.contact.solid].friction, view, touch);
-        held = held || touch.contact.held;
-        for (const Touch& other : group) {
-            touch.pinched = touch.pinched || opposed(touch, other);
-            rough = rough || (touch.pinched && solids[other.contact.solid].friction.static_ > 0);
-        }
-    }
-    const bool pinched = std::any_of(group.begin(), group.end(), [](const Touch& t) { return t.pinched; });
+    const bool held = std::ranges::any_of(group, [](const Touch& t) { return t.contact.held; });
     auto N = taken_directions(group);
-    const bool all = held || (pinched && rough) || (N.cols() == 3 && std::abs(Mat3(N).determinant()) > 1e-6);
-
     Constraint c;
     c.particle = p;
     const Vec3 from_base = (view.x[p] - base[p]) / view.h;
-    if (all) {
-        // Rides on what holds it: the held contacts' solids, or all of them in a pinch. Depths of opposing
-        // normals average to the middle of the gap.
-        Vec3 ride = Vec3::Zero(), close = Vec3::Zero(), depth = Vec3::Zero();
+    const auto riding = [&](const Touch& touch) { return from_base + carry(view) * touch.velocity; };
+    if (held || is_gripped(solids, group) || (N.cols() == 3 && all_taken(N))) {
+        // Rides on what holds it: the held contacts' solids, or all of them in a pinch.
+        Vec3 ride = Vec3::Zero(), close = Vec3::Zero();
         int riders = 0;
         for (const Touch& touch : group) {
             close += closing(touch, view.h);
-            depth += pinched ? (-touch.gap * touch.normal).eval() : depth_correction(touch, view.h);
             if (!touch.contact.held && held) continue;
             ride += touch.velocity;
             ++riders;
         }
-        if (pinched) {
-            depth /= static_cast<double>(group.size());
-            const double limit = correction_speed * view.h;
-            if (depth.norm() > limit) depth *= limit / depth.norm();
-            close.setZero();
-        }
+        if (is_pinched(group)) close.setZero();
         c.free = 0;
         c.z = from_base + carry(view) / riders * ride + close - view.v[p];
-        base[p] += depth;
     } else {
         if (N.cols() == 3) N.conservativeResize(3, 2);
-        Eigen::VectorXd speed(N.cols()), depth(N.cols());
+        Eigen::VectorXd speed(N.cols());
         speed.setConstant(-std::numeric_limits<double>::infinity());
-        depth.setZero();
         for (const Touch& touch : group) {
             for (Eigen::Index k = 0; k < N.cols(); ++k) {
-                if (!same_direction(N.col(k), touch.normal)) continue;
-                // Smooth solids hold what they pinch in the middle between them, and let it slide there.
-                if (touch.pinched) {
-                    pinch_along(view, group, N.col(k), from_base, speed[k], depth[k]);
-                    continue;
-                }
-                speed[k] = std::max(speed[k], touch.normal.dot(from_base + carry(view) * touch.velocity +
-                                                               closing(touch, view.h)));
-                depth[k] = std::max(depth[k], depth_correction(touch, view.h).norm());
+                const Vec3 n = N.col(k);
+                if (!same_direction(n, touch.normal)) continue;
+                const double own =
+                    touch.pinched ? mean_of_pinch(group, n, [&](const Touch& t) { return n.dot(riding(t)); })
+                                  : touch.normal.dot(riding(touch) + closing(touch, view.h));
+                speed[k] = std::max(speed[k], own);
             }
         }
         c.free = static_cast<std::uint8_t>(3 - N.cols());
         c.S = Mat3::Identity() - N * (N.transpose() * N).eval().ldlt().solve(Eigen::MatrixXd(N.transpose()));
         c.S = 0.5 * (c.S + c.S.transpose()).eval();
         c.z = with_components(N, speed - N.transpose() * view.v[p]);
-        base[p] += with_components(N, depth);
-        for (const Touch& touch : group) {
-            add_kinetic_friction(solids[touch.contact.solid].friction, view, touch.contact, impulse[p]);
-        }
     }
     constraints.add(c);
 }
 
-// Force along each touch's normal: `force` split over the group's normals.
-void split_force(Group group, const Vec3& force, std::span<double> along) {
-    if (group.size() == 1) {
-        along[0] = group.front().normal.dot(force);
-        return;
+// How far a group's particle is put out of what it is too deep in.
+Vec3 group_correction(std::span<const Solid> solids, const StepView& view, std::span<const Touch> group) {
+    const double limit = correction_speed * view.h;
+    if (is_gripped(solids, group)) {
+        // Depths of opposing normals average to the middle of the gap.
+        Vec3 depth = Vec3::Zero();
+        for (const Touch& touch : group) depth -= touch.gap * touch.normal;
+        depth /= static_cast<double>(group.size());
+        return depth.norm() > limit ? Vec3(limit / depth.norm() * depth) : depth;
     }
-    const auto N = taken_directions(group);
-    const Eigen::VectorXd share =
-        (N.transpose() * N).eval().ldlt().solve(Eigen::VectorXd(N.transpose() * force));
-    for (std::size_t t = 0; t < group.size(); ++t) {
-        along[t] = 0;
-        for (Eigen::Index k = 0; k < N.cols(); ++k) {
-            if (same_direction(N.col(k), group[t].normal)) along[t] = share[k];
+    auto N = taken_directions(group);
+    if (N.cols() == 3 && !all_taken(N)) N.conservativeResize(3, 2);
+    Eigen::VectorXd depth = Eigen::VectorXd::Zero(N.cols());
+    for (Eigen::Index k = 0; k < N.cols(); ++k) {
+        const Vec3 n = N.col(k);
+        for (const Touch& touch : group) {
+            if (!same_direction(n, touch.normal)) continue;
+            if (touch.pinched) {
+                const auto way = [&](const Touch& t) { return -t.gap * n.dot(t.normal); };
+                depth[k] = std::clamp(mean_of_pinch(group, n, way), -limit, limit);
+            } else {
+                depth[k] = std::max(depth[k], depth_correction(touch, view.h).norm());
+            }
         }
     }
-}
-
-// Contact after the solve, from the force that held it.
-Contact judge(const Friction& friction, const Touch& touch, const Vec3& force, double normal,
-              double nothing) {
-    Contact c = touch.contact;
-    if (touch.pinched) {
-        c.force = std::abs(normal);
-        c.held = false;
-        return c;
-    }
-    if (normal < -nothing) {
-        c = {c.particle, c.solid, false, 0, normal, Vec3::Zero()};
-        return c;
-    }
-    c.force = std::max(normal, 0.0);
-    const Vec3 across = force - touch.normal.dot(force) * touch.normal;
-    if (c.held && across.norm() > friction.static_ * c.force + nothing) {
-        c.held = false;
-        c.sliding = slip_steps;
-        c.slip.setZero();
-    }
-    return c;
+    return with_components(N, depth);
 }
 
 }  // namespace
@@ -362,37 +266,31 @@ void find_touches(std::span<const Solid> solids, const SolidPoses& poses, const 
     for (const std::vector<Touch>& part : found) out.insert(out.end(), part.begin(), part.end());
 }
 
-void constrain_touches(std::span<const Solid> solids, const StepView& view, std::vector<Touch>& touches,
-                       Constraints& constraints, std::span<Vec3> base, std::span<Vec3> impulse) {
+void settle_touches(std::span<const Solid> solids, const StepView& view, std::vector<Touch>& touches,
+                    std::span<Vec3> base) {
     const bool several = std::ranges::adjacent_find(touches, {}, [](const Touch& touch) {
                              return touch.contact.particle;
                          }) != touches.end();
     if (several) drop_loose(touches);
-    for_each_group(touches, [&](Group group) {
+    for_each_group(std::span(touches), [&](Group group) {
+        const std::uint32_t p = group.front().contact.particle;
         if (group.size() == 1) {
-            Touch& touch = group.front();
-            constrain_single(solids[touch.contact.solid].friction, view, touch, constraints, base, impulse);
-        } else {
-            constrain_group(solids, view, group, constraints, base, impulse);
+            base[p] += depth_correction(group.front(), view.h);
+            return;
         }
+        for (Touch& touch : group)
+            touch.pinched = std::ranges::any_of(group, [&](const Touch& t) { return opposed(touch, t); });
+        base[p] += group_correction(solids, view, group);
     });
 }
 
-void judge_touches(std::span<const Solid> solids, const StepView& view, const Constraints& constraints,
-                   std::span<const Vec3> reaction, std::span<Touch> touches, std::vector<Contact>& out) {
-    out.clear();
-    std::vector<double> along;
-    for_each_group(touches, [&](Group group) {
-        const std::uint32_t p = group.front().contact.particle;
-        const Constraint* constraint = constraints.find(p);
-        const Vec3 force =
-            reaction[static_cast<std::size_t>(constraint - constraints.all().data())] / view.h_force;
-        const double nothing = pull_share * view.mass[p] * view.gravity.norm();
-        along.resize(group.size());
-        split_force(group, force, along);
-        for (std::size_t t = 0; t < group.size(); ++t) {
-            const Friction& friction = solids[group[t].contact.solid].friction;
-            out.push_back(judge(friction, group[t], force, along[t], nothing));
+void constrain_touches(std::span<const Solid> solids, const StepView& view, std::span<const Touch> touches,
+                       std::span<const Vec3> base, Constraints& constraints) {
+    for_each_group(touches, [&](std::span<const Touch> group) {
+        if (group.size() == 1) {
+            constrain_single(view, group.front(), base, constraints);
+        } else {
+            constrain_group(solids, view, group, base, constraints);
         }
     });
 }

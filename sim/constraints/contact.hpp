@@ -13,8 +13,9 @@
 namespace unravel::sim {
 
 /// Contact of particles with solids by constraints (Baraff & Witkin 1998, Sec. 5–6): a touching particle
-/// loses the direction of the solid's normal; static friction takes all three. Two contacts take two
-/// directions, three or a pinch between two solids ("flypapering", Baraff, Witkin & Kass 2003) all.
+/// loses the direction of the solid's normal; static friction (sim/constraints/friction.hpp) takes all three.
+/// Two contacts take two directions, three or a pinch between two solids ("flypapering", Baraff, Witkin &
+/// Kass 2003) all.
 
 /// A contact that has opened by this share of the solid's offset is over.
 inline constexpr double open_share = 0.5;
@@ -58,6 +59,12 @@ struct Touch {
     Vec3 velocity{0, 0, 0};  ///< m/s, of the solid's material at the particle, over the step
     double gap = 0;          ///< m, distance beyond the solid's offset; negative: too deep
     bool pinched = false;    ///< held between two solids
+    bool is_new = true;      ///< was none in the last step, or had let go
+    // Friction (sim/constraints/friction.hpp)
+    double drag = 0;           ///< kg, c of its sliding
+    Vec3 rub{0, 0, 0};         ///< kg·m/s, friction where it begins to slide
+    double drag_added = 0;     ///< kg, what of c is in the system
+    Vec3 push_added{0, 0, 0};  ///< kg·m/s, and on its right-hand side
 };
 
 /// The discrete step as the constraints see it: x' = base + h v' with v' = v + Δv.
@@ -78,17 +85,16 @@ void find_touches(std::span<const Solid> solids, const SolidPoses& poses, const 
                   std::span<const Contact> known, const Constraints& pinned,
                   std::vector<std::vector<Touch>>& found, std::vector<Touch>& out);
 
-/// Decides what sticks and what slides, and turns touches into constraints.
-///   base      (particles) positions x' starts from [m]; depth corrections are added here, never to a
-///   velocity impulse   (particles) kinetic friction is added [kg·m/s]
-void constrain_touches(std::span<const Solid> solids, const StepView& view, std::vector<Touch>& touches,
-                       Constraints& constraints, std::span<Vec3> base, std::span<Vec3> impulse);
+/// Lets a particle between two solids that leave it room touch the nearer one alone, marks what they pinch,
+/// and puts particles out of what they are too deep in.
+///   base  (particles) positions x' starts from [m]; depth corrections are added here, never to a velocity
+void settle_touches(std::span<const Solid> solids, const StepView& view, std::vector<Touch>& touches,
+                    std::span<Vec3> base);
 
-/// After the solve: releases contacts whose constraint force pulls, lets held ones slip where friction can't
-/// hold them, and writes the contacts for the next step.
-///   reaction  (constraints) impulse of each constraint, A Δv − b [kg·m/s]
-void judge_touches(std::span<const Solid> solids, const StepView& view, const Constraints& constraints,
-                   std::span<const Vec3> reaction, std::span<Touch> touches, std::vector<Contact>& out);
+/// Turns touches, held or sliding, into constraints.
+///   base  (particles) positions x' starts from, without depth corrections [m]
+void constrain_touches(std::span<const Solid> solids, const StepView& view, std::span<const Touch> touches,
+                       std::span<const Vec3> base, Constraints& constraints);
 
 /// The last resort after a step: contacts are foreseen from velocities, and what a taut spring flings into a
 /// fast solid within the step is not. Such a particle is put back on the solid's surface, within its skin,

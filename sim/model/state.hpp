@@ -12,9 +12,10 @@ struct Contact {
     std::uint32_t particle = 0;
     std::uint32_t solid = 0;
     bool held = false;         ///< static friction: the particle moves with the solid
-    std::uint8_t sliding = 0;  ///< steps for which it must still slide after a slip
+    bool begins = false;       ///< was held by more than friction can, and now slides towards `slip`
+    std::uint8_t sliding = 0;  ///< steps for which it has yet to be seen stopped before it is held again
     double force = 0;    ///< N, normal force of the last step; negative: it pulled, and is to be released
-    Vec3 slip{0, 0, 0};  ///< m/s, last tangential velocity relative to the solid; zero while held
+    Vec3 slip{0, 0, 0};  ///< m/s along the solid, foreseen for the next step; of what begins a direction
 };
 
 /// What a checkpoint holds: everything that a next step reads.

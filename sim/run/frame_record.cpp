@@ -40,6 +40,7 @@ void members(Archive& archive, Record& r) {
         archive(c.particle);
         archive(c.solid);
         archive(c.held);
+        archive(c.begins);
         archive(c.sliding);
         archive(c.force);
         archive(c.slip);

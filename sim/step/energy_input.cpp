@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "sim/constraints/friction.hpp"
 #include "sim/constraints/pins.hpp"
 #include "sim/mesh/mesh_solid.hpp"
 #include "sim/solids/sdf.hpp"
@@ -50,22 +51,22 @@ double work_of_constraints(const ClothModel& model, const ClothState& after, Ste
     const ClothState& before = ws.before;
     const ContactStage& contact = ws.contact;
     find_reactions(model, ws);
-    const auto work = [&](std::size_t k, std::uint32_t p) {
-        Vec3 impulse = contact.reaction[k];
-        if (!contact.friction.empty()) impulse += contact.friction[p];
+    const std::span<const Constraint> all = ws.constraints.all();
+    const auto work = [&](std::size_t k, std::uint32_t p, std::span<const Touch> touches) {
+        Vec3 impulse = contact.reactions.impulse[k];
+        for (const Touch& touch : touches) impulse += friction_impulse(touch, all[k], after.v[p]);
         return impulse.dot(after.x[p] - before.x[p]) / ws.stage.h_force;
     };
     double pins = 0, solids = 0;
-    const std::span<const Constraint> all = ws.constraints.all();
     for (std::size_t k = 0; k < all.size(); ++k) {
         const std::uint32_t p = all[k].particle;
-        const auto touches = std::ranges::equal_range(contact.touches, p, {},
-                                                      [](const Touch& t) { return t.contact.particle; });
+        const std::span<const Touch> touches = std::ranges::equal_range(
+            contact.touches, p, {}, [](const Touch& t) { return t.contact.particle; });
         const auto moved = [&](const Touch& touch) { return moves(model.solids[touch.contact.solid]); };
         if (touches.empty()) {
-            pins += work(k, p);
+            pins += work(k, p, touches);
         } else if (std::ranges::any_of(touches, moved)) {
-            solids += work(k, p);
+            solids += work(k, p, touches);
         }
     }
     return std::max(pins, 0.0) + std::max(solids, 0.0);

@@ -19,7 +19,20 @@ constexpr int most_solves_again = 4;
 // Halvings of a Newton step that would increase the residual.
 constexpr int newton_halvings = 4;
 
-// Forces at (x*, v*), and the right-hand side of the stage: friction, M (ṽ − v*) and h_f f*. Gathered per
+// Friction into a system that has none yet.
+void begin_friction(const ClothModel& model, StepWorkspace& ws) {
+    ContactStage& contact = ws.contact;
+    contact.inertia.clear();
+    if (!any_friction(contact.touches)) return;
+    contact.inertia = model.mass;
+    for (Touch& touch : contact.touches) {
+        touch.drag_added = 0;
+        touch.push_added.setZero();
+    }
+    add_friction(ws.stage.v_at, ws.constraints, contact.touches, contact.inertia, ws.linear.impulse);
+}
+
+// Forces at (x*, v*), and the right-hand side of the stage: M (ṽ − v*), h_f f* and friction. Gathered per
 // particle in the order of the terms.
 void add_forces(const ClothModel& model, StepWorkspace& ws) {
     ForceStage& forces = ws.forces;
@@ -39,7 +52,6 @@ void add_forces(const ClothModel& model, StepWorkspace& ws) {
         if (planned.term->add && added) planned.term->add(model, forces.memory, forces.sum);
     }
     const Stage& stage = ws.stage;
-    const bool rubbed = !ws.contact.friction.empty();
     const bool surfaces = !ws.contact.surfaces.stencils.empty();
     const auto pushed = [&](std::size_t p) {
         return surfaces ? contact_force(ws.contact.surfaces, static_cast<std::uint32_t>(p))
@@ -47,10 +59,10 @@ void add_forces(const ClothModel& model, StepWorkspace& ws) {
     };
     ws.linear.impulse.resize(model.size());
     parallel_each(model.size(), [&](std::size_t p) {
-        const Vec3 friction = rubbed ? ws.contact.friction[p] : Vec3(Vec3::Zero());
-        ws.linear.impulse[p] = friction + stage.h_force * (forces.sum[p] + pushed(p)) +
-                               model.mass[p] * (stage.v[p] - stage.v_at[p]);
+        ws.linear.impulse[p] =
+            stage.h_force * (forces.sum[p] + pushed(p)) + model.mass[p] * (stage.v[p] - stage.v_at[p]);
     });
+    begin_friction(model, ws);
 }
 
 void count_solves(const std::vector<ComponentSolve>& solves, StepReport& report) {
@@ -84,10 +96,11 @@ void compare_whole(const ClothModel& model, const StepOptions& options, const St
 void solve_uncoupled(const ClothModel& model, StepWorkspace& ws) {
     LinearStage& linear = ws.linear;
     lone_particles(model.size(), ws.constraints, linear.components);
+    const std::span<const double> inertia = inertia_of(model, ws);
     linear.solves.assign(linear.components.count(), {});
     parallel_each(model.size(), [&](std::size_t p) {
         const Constraint* c = ws.constraints.find(static_cast<std::uint32_t>(p));
-        const Vec3 dv = linear.impulse[p] / model.mass[p];
+        const Vec3 dv = linear.impulse[p] / inertia[p];
         linear.dv[p] = c ? Vec3(c->S * dv + (c->z - c->S * c->z)) : dv;
     });
 }
@@ -282,7 +295,7 @@ void solve_stage(const ClothModel& model, const StepOptions& options, std::span<
     const std::size_t n = model.size();
     const StepCouplings couplings = couplings_of(model, ws);
     LinearStage& linear = ws.linear;
-    const Load load{model.mass, linear.impulse, linear.drift};
+    const Load load{inertia_of(model, ws), linear.impulse, linear.drift};
     linear.dv.resize(n);
     linear.coupled = any_implicit(couplings);
     if (!linear.coupled) {

@@ -47,7 +47,13 @@ void solve_again_where_taut(const ClothModel& model, const StepOptions& options,
 void iterate(const ClothModel& model, const StepOptions& options, StageTimer& timer, StepWorkspace& ws,
              StepReport& report);
 
-/// A Δv − b of every constraint, the impulse that holds it: in the contact stage, as last solved.
+/// What stands in front of Δv besides what couples particles (particles) [kg]: mass, and what resists
+/// sliding.
+inline std::span<const double> inertia_of(const ClothModel& model, const StepWorkspace& ws) {
+    return ws.contact.inertia.empty() ? std::span<const double>(model.mass) : ws.contact.inertia;
+}
+
+/// What the last solve has given each constraint: the contact stage's reactions.
 void find_reactions(const ClothModel& model, StepWorkspace& ws);
 
 /// What a step of h seconds from `state` makes, but for what it computes: x, v, dv and contacts.

@@ -14,7 +14,7 @@ namespace unravel::sim {
 
 namespace {
 
-// S and z of Eq. (9): pins, then contacts, with their depth corrections and friction.
+// S and z of Eq. (9): pins, then contacts, with their depth corrections.
 void constrain(const ClothModel& model, const StepView& view, const ClothState& state, double h,
                StepWorkspace& ws) {
     ContactStage& contact = ws.contact;
@@ -23,12 +23,12 @@ void constrain(const ClothModel& model, const StepView& view, const ClothState& 
     contact.touches.clear();
     if (model.solids.empty()) return;
     contact.corrected.assign(ws.stage.x.begin(), ws.stage.x.end());
-    contact.friction.assign(model.size(), Vec3::Zero());
     pose_solids(model.solids, state.t, h, contact.poses);
     find_touches(model.solids, contact.poses, view, state.contacts, ws.constraints, contact.found,
                  contact.touches);
-    constrain_touches(model.solids, view, contact.touches, ws.constraints, contact.corrected,
-                      contact.friction);
+    settle_touches(model.solids, view, contact.touches, contact.corrected);
+    try_holds(model.solids, view, contact.touches);
+    constrain_touches(model.solids, view, contact.touches, ws.stage.x, ws.constraints);
 }
 
 void count_springs(const StepCouplings& couplings, StepReport& report) {
@@ -39,6 +39,25 @@ void count_springs(const StepCouplings& couplings, StepReport& report) {
             report.inactive += s == SpringState::inactive;
         }
     }
+}
+
+// What friction is far from holding slides, and the step is solved again (sim/constraints/friction.hpp).
+void settle_friction(const ClothModel& model, const StepOptions& options, const StepView& view, double t_end,
+                     StageTimer& timer, StepWorkspace& ws, StepReport& report) {
+    ContactStage& contact = ws.contact;
+    for (contact.trials = 0; contact.trials < most_trials; ++contact.trials) {
+        find_reactions(model, ws);
+        if (!test_holds(model.solids, view, ws.constraints, contact.reactions, contact.touches)) break;
+        ws.constraints.reset(model.size());
+        constrain_pins(model, view, ws.stage.x, t_end, ws.constraints);
+        constrain_touches(model.solids, view, contact.touches, ws.stage.x, ws.constraints);
+        if (contact.inertia.empty()) contact.inertia = model.mass;
+        add_friction(ws.stage.v_at, ws.constraints, contact.touches, contact.inertia, ws.linear.impulse);
+        timer.lap(report.times.contact);
+        ws.linear.guess = ws.linear.dv;
+        solve_stage(model, options, ws.linear.guess, timer, ws, report);
+    }
+    timer.lap(report.times.contact);
 }
 
 // What a multistep scheme looks back on. Contact makes velocities jump: a touching particle looks back on a
@@ -58,15 +77,20 @@ void remember(double h, const ClothState& state, const StepWorkspace& ws, ClothS
 void find_reactions(const ClothModel& model, StepWorkspace& ws) {
     const std::span<const Constraint> all = ws.constraints.all();
     const LinearStage& linear = ws.linear;
-    ws.contact.reaction.resize(all.size());
+    Reactions& out = ws.contact.reactions;
+    out.resize(all.size());
     parallel_each(all.size(), [&](std::size_t k) {
         const std::uint32_t p = all[k].particle;
+        out.velocity[k] = ws.stage.v_at[p] + linear.dv[p];
         if (!linear.coupled) {
-            ws.contact.reaction[k] = model.mass[p] * linear.dv[p] - linear.impulse[p];
+            const double inertia = inertia_of(model, ws)[p];
+            out.impulse[k] = inertia * linear.dv[p] - linear.impulse[p];
+            out.block[k] = inertia * Mat3::Identity();
             return;
         }
         const std::uint32_t row = linear.system.row_of[p];
-        ws.contact.reaction[k] = row_times(linear.system, row, linear.solve.x) - linear.system.b[row];
+        out.impulse[k] = row_times(linear.system, row, linear.solve.x) - linear.system.b[row];
+        out.block[k] = linear.system.diagonal[row];
     });
 }
 
@@ -217,6 +241,7 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
 
     // Independent components (Sec. 5), A Δv = b (Eq. 5) under Sx = Sb, (I − S)x = (I − S)z (Eq. 9)
     solve_stage(model, options, state.dv, timer, ws, report);
+    if (!model.solids.empty()) settle_friction(model, options, view, state.t + h, timer, ws, report);
     const bool iterates = scheme.iterates || options.energy_limit;
     if (iterates) {
         iterate(model, options, timer, ws, report);
@@ -231,7 +256,7 @@ StepReport coupled_step(const ClothModel& model, const StepOptions& options, dou
     begin_next(before, h, state);
     if (!model.solids.empty()) {
         find_reactions(model, ws);
-        judge_touches(model.solids, view, ws.constraints, ws.contact.reaction, ws.contact.touches,
+        judge_touches(model.solids, view, ws.constraints, ws.contact.reactions, ws.contact.touches,
                       state.contacts);
         report.pulling = count_pulling(model, before.contacts, state.contacts);
         timer.lap(report.times.contact);

@@ -25,7 +25,7 @@ StepTrace trace_of(const ClothModel& model, const StepWorkspace& ws) {
             linear.solves,
             ws.forces.memory.springs.state,
             linear.dv,
-            {model.mass, linear.impulse, linear.drift},
+            {inertia_of(model, ws), linear.impulse, linear.drift},
             staged ? couplings_of(model, ws) : StepCouplings(),
             linear.system,
             linear.grids};

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "sim/constraints/contact.hpp"
+#include "sim/constraints/friction.hpp"
 #include "sim/linear/components.hpp"
 #include "sim/linear/solve.hpp"
 #include "sim/linear/system.hpp"
@@ -27,8 +28,9 @@ struct ContactStage {
     std::vector<std::vector<Touch>> found;  ///< (chunks of particles)
     std::vector<Touch> touches;
     std::vector<Vec3> corrected;  ///< (particles) x̃ with the contacts' depth corrections [m]
-    std::vector<Vec3> friction;   ///< (particles) kg·m/s
-    std::vector<Vec3> reaction;   ///< (constraints) A Δv − b, what holds each [kg·m/s]
+    std::vector<double> inertia;  ///< (particles) kg, mass and what resists sliding; empty where none slides
+    Reactions reactions;
+    std::uint32_t trials = 0;  ///< times that the step was solved again for friction
     /// Between surfaces: of cloth with cloth, and of edges and faces with solids.
     SurfaceContactWorkspace surfaces;
     std::vector<Vec3> foreseen;  ///< (particles) where the step would end without it [m]

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/constraints/friction.hpp"
 #include "sim/solids/sdf.hpp"
 
 namespace unravel::sim {
@@ -45,6 +46,24 @@ void hold_pinned(const RowStretch& stretch, RowContactScratch& scratch) {
 
 StepView view_of(const ClothModel& model, double h, const RowContactScratch& scratch) {
     return {scratch.x, scratch.v, scratch.mass, h, model.gravity, h, h};
+}
+
+// Constrains what touches, and finds what that does to it: nothing is coupled.
+void solve_touches(const ClothModel& model, const RowStretch& stretch, const StepView& view,
+                   RowContactScratch& scratch) {
+    constrain_touches(model.solids, view, scratch.touches, scratch.x, scratch.constraints);
+    add_friction(scratch.v, scratch.constraints, scratch.touches, scratch.inertia, scratch.impulse);
+    const std::span<const Constraint> all = scratch.constraints.all();
+    scratch.dv.resize(all.size());
+    scratch.reactions.resize(all.size());
+    for (std::size_t c = stretch.pinned.size(); c < all.size(); ++c) {
+        const std::uint32_t k = all[c].particle;
+        const Vec3 free = scratch.impulse[k] / scratch.inertia[k];
+        scratch.dv[c] = all[c].S * free + (all[c].z - all[c].S * all[c].z);
+        scratch.reactions.velocity[c] = scratch.v[k] + scratch.dv[c];
+        scratch.reactions.impulse[c] = scratch.inertia[k] * scratch.dv[c] - scratch.impulse[k];
+        scratch.reactions.block[c] = scratch.inertia[k] * Mat3::Identity();
+    }
 }
 
 }  // namespace
@@ -94,25 +113,22 @@ void meet_solids(const ClothModel& model, const SolidSubstep& substep, const Row
         scratch.impulse[k] = h * (stretch.mass[k] * model.gravity + at(stretch.f, k));
     }
     scratch.base = scratch.x;
-    scratch.friction.assign(n, Vec3::Zero());
+    scratch.inertia = scratch.mass;
     hold_pinned(stretch, scratch);
     const StepView view = view_of(model, h, scratch);
     find_touches(model.solids, substep.poses, view, contacts.contacts, scratch.constraints, scratch.found,
                  scratch.touches);
-    constrain_touches(model.solids, view, scratch.touches, scratch.constraints, scratch.base,
-                      scratch.friction);
-    const std::span<const Constraint> all = scratch.constraints.all();
-    scratch.reaction.assign(all.size(), Vec3::Zero());
-    scratch.dv.resize(all.size());
-    for (std::size_t c = stretch.pinned.size(); c < all.size(); ++c) {
-        const std::uint32_t k = all[c].particle;
-        const Vec3 impulse = scratch.impulse[k] + scratch.friction[k];
-        const Vec3 free = impulse / scratch.mass[k];
-        scratch.dv[c] = all[c].S * free + (all[c].z - all[c].S * all[c].z);
-        scratch.reaction[c] = scratch.mass[k] * scratch.dv[c] - impulse;
+    settle_touches(model.solids, view, scratch.touches, scratch.base);
+    try_holds(model.solids, view, scratch.touches);
+    solve_touches(model, stretch, view, scratch);
+    for (std::uint32_t trial = 0; trial < most_trials; ++trial) {
+        if (!test_holds(model.solids, view, scratch.constraints, scratch.reactions, scratch.touches)) break;
+        hold_pinned(stretch, scratch);
+        solve_touches(model, stretch, view, scratch);
     }
-    judge_touches(model.solids, view, scratch.constraints, scratch.reaction, scratch.touches,
+    judge_touches(model.solids, view, scratch.constraints, scratch.reactions, scratch.touches,
                   contacts.contacts);
+    const std::span<const Constraint> all = scratch.constraints.all();
     contacts.touches = static_cast<std::uint32_t>(scratch.touches.size());
     contacts.constraints.assign(all.begin() + static_cast<std::ptrdiff_t>(stretch.pinned.size()), all.end());
 }

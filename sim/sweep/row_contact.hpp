@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "sim/constraints/contact.hpp"
+#include "sim/constraints/friction.hpp"
 #include "sim/model/model.hpp"
 #include "sim/rows/sweep_row.hpp"
 
@@ -33,8 +34,9 @@ struct RowContacts {
 
 /// Memory of one thread.
 struct RowContactScratch {
-    std::vector<Vec3> x, v, base, friction, impulse, dv, reaction;
-    std::vector<double> mass;
+    std::vector<Vec3> x, v, base, impulse, dv;
+    Reactions reactions;
+    std::vector<double> mass, inertia;
     Constraints constraints;
     std::vector<std::vector<Touch>> found;
     std::vector<Touch> touches;

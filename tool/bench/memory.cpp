@@ -119,8 +119,8 @@ MemoryRecord account_memory(const Simulation& simulation, double peak) {
     add("forces of air", bytes(f.air.force));
     add("forces, drift, impulse and other vectors",
         bytes(w.forces.pushes, w.forces.sum, w.forces.taut, w.forces.ahead, w.contact.corrected,
-              w.contact.friction, w.contact.reaction, l.impulse, l.drift, l.drift_from_start, l.predicted,
-              l.guess, l.dv));
+              w.contact.inertia, w.contact.reactions.impulse, w.contact.reactions.velocity,
+              w.contact.reactions.block, l.impulse, l.drift, l.drift_from_start, l.predicted, l.guess, l.dv));
     add("stitches", bytes(f.stitches.springs) + bytes(f.stitches.forces) +
                         static_cast<double>(f.stitches.adjacency.bytes()));
     const SelfCollisionWorkspace& c = f.self_collision;

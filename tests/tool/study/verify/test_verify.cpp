@@ -55,8 +55,8 @@ TEST_CASE("every case of verify holds on its first grid at the default step", "[
         const VerifyOutcome outcome = run_verify_case(of, true);
         INFO(terminal_text(outcome));
         CHECK(!outcome.result.lines.empty());
-        // Two lines are off, and the table tells so: held cloth that is pulled over a curved solid slides too
-        // late, and a turning sheet loses more of its spin than theory has it.
+        // Two lines are off, and the table tells so: a taut tape just above the capstan's limit slides too
+        // slowly, and a turning sheet loses more of its spin than theory has it.
         const bool known = of.name == std::string("capstan") || of.name == std::string("spin");
         CHECK(outcome.wrong() == (known ? 1 : 0));
     }
