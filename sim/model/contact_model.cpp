@@ -171,11 +171,11 @@ bool needs_surfaces(const Solid& solid, double spacing) {
     return spacing > 2 * std::sqrt(solid.offset * (2 * radius + solid.offset));
 }
 
-void choose_solid_contacts(ClothModel& model) {
+void choose_solid_contacts(const Reach& reach, ClothModel& model) {
     const double spacing = widest_spacing(model);
     for (Solid& solid : model.solids) {
         if (solid.contact != SolidContact::automatic) continue;
-        const bool needs = model.may_touch && needs_surfaces(solid, spacing);
+        const bool needs = reach.meets(solid) && needs_surfaces(solid, spacing);
         solid.contact = needs ? SolidContact::surface : SolidContact::particles;
     }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "sim/model/model.hpp"
+#include "sim/model/reach.hpp"
 #include "sim/surface/impact.hpp"
 #include "sim/surface/surface_tree.hpp"
 
@@ -35,7 +36,7 @@ bool needs_surfaces(const Solid& solid, double spacing);
 
 /// Decides what the scene leaves open of a model that has its springs and solids: solids that the cloth can
 /// come to and its particles may miss hold off edges and faces, too.
-void choose_solid_contacts(ClothModel& model);
+void choose_solid_contacts(const Reach& reach, ClothModel& model);
 
 /// Builds it for a model that has its cloths, springs and masses; null where crossings can't be: a single
 /// cloth without self-collision, and no solid but planes and meshes. Thickness and near particles are only

@@ -348,12 +348,13 @@ ClothModel build_model(const Scene& scene, Placement& placement) {
         if (!g.patch.grid()) add_stitches(g.cloth, g.patch, placement, model);
     }
     if (scene.wind && acts(*scene.wind)) model.wind = scene.wind;
-    model.may_touch = can_come_near(scene, model, placement);
+    const Reach reach = reach_of(scene, model, placement);
+    model.may_touch = std::ranges::any_of(model.solids, [&](const Solid& s) { return reach.meets(s); });
     if (scene.self_collision) {
         model.self_collision = fitting(*scene.self_collision, grids, model);
         find_mesh_neighbours(model);
     }
-    choose_solid_contacts(model);
+    choose_solid_contacts(reach, model);
     model.contact = make_contact_model(scene, model, placement);
     model.spring_adjacency = !model.grids.empty() && model.grids.size() == model.cloths.size()
                                  ? adjacency_of(model.grids)

@@ -66,8 +66,15 @@ double fastest_wind(const Wind& wind) {
 
 }  // namespace
 
-bool can_come_near(const Scene& scene, const ClothModel& model, const Placement& placement) {
-    if (model.solids.empty()) return false;
+bool Reach::meets(const Solid& solid) const {
+    const Vec3 to_cloth = centre - solid.center;
+    const Pose start = solid_pose(solid, 0);
+    const double distance = solid.shape == Shape::plane ? start.linear().col(1).dot(to_cloth)
+                                                        : to_cloth.norm() - law_of(solid.shape).reach(solid);
+    return !(distance > way + solid.offset);
+}
+
+Reach reach_of(const Scene& scene, const ClothModel& model, const Placement& placement) {
     const Ball cloth = ball_around(placement.x);
     const double seconds = scene.clip.duration + scene.clip.settle;
     double speed = model.wind ? fastest_wind(*model.wind) : 0.0, size = 2 * cloth.radius, carried = 0;
@@ -77,15 +84,7 @@ bool can_come_near(const Scene& scene, const ClothModel& model, const Placement&
     for (const PinnedGroup& pin : model.pins) carried += travel_of(pin);
     for (const Solid& solid : model.solids) carried += travel_of(solid);
     speed += thrown + model.gravity.norm() * seconds;
-    const double way = cloth.radius + most_stretched * size + speed * seconds + carried;
-    return std::ranges::any_of(model.solids, [&](const Solid& solid) {
-        const Vec3 to_cloth = cloth.centre - solid.center;
-        const Pose start = solid_pose(solid, 0);
-        const double distance = solid.shape == Shape::plane
-                                    ? start.linear().col(1).dot(to_cloth)
-                                    : to_cloth.norm() - law_of(solid.shape).reach(solid);
-        return !(distance > way + solid.offset);
-    });
+    return {cloth.centre, cloth.radius + most_stretched * size + speed * seconds + carried};
 }
 
 }  // namespace unravel::sim
