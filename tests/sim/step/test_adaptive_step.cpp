@@ -24,7 +24,7 @@ Scene adaptive_drape(double max_strain) {
 }  // namespace
 
 TEST_CASE("adaptive steps meet every frame exactly, with sizes that are halvings of the scene's") {
-    Simulation simulation = start_simulation(adaptive_drape(0.02));
+    Simulation simulation = start_simulation(adaptive_drape(0.01));
     std::set<double> sizes;
     std::uint32_t rejected = 0;
     for (int k = 1; k <= 15; ++k) {

@@ -28,7 +28,7 @@ TEST_CASE("at every step the decomposed solution meets the whole system's tolera
     Scene scene = drape();
     Simulation simulation = start_simulation(scene);
     int decomposed_steps = 0;
-    for (int k = 0; k < 120; ++k) {
+    for (int k = 0; k < 200; ++k) {
         step(simulation.model, simulation.options, 0.005, simulation.state, simulation.ws);
         const StepTrace trace = trace_of(simulation.model, simulation.ws);
         decomposed_steps += trace.components.count() > 1;
