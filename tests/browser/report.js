@@ -41,8 +41,9 @@
     slider.dispatchEvent(new Event('input', {bubbles: true}));
     check('the slider moves the frame', number() === 5);
     const rows = document.querySelectorAll('#components tbody tr');
-    check('the table lists components', rows.length > 0 && rows[0].cells.length === 8);
-    const cells = [...rows].map((row) => Number(row.cells[row.cells.length === 8 ? 2 : 1].textContent.replaceAll(',', '')));
+    check('the table lists components', rows.length > 0 && rows[0].cells.length === 9);
+    check('a component says which solver took it, and why', /^\S.*: \S/.test(rows[0].cells[8].textContent));
+    const cells = [...rows].map((row) => Number(row.cells[row.cells.length === 9 ? 2 : 1].textContent.replaceAll(',', '')));
     check('components and held particles are all particles',
           cells.reduce((sum, n) => sum + n, 0) + (data.series.constrained ? data.series.constrained[5] : 0) ===
           Number(/(\d+) particles/.exec(data.summary)[1]));
