@@ -38,7 +38,6 @@ public:
     int run();
 
 private:
-    // Out of line: what makes an App compiles all of CLI11.
     CLI::App& add_command(const char* name, const char* what, std::function<int()> act);
 
     std::vector<std::string> words_;
